@@ -6,8 +6,6 @@
 
 use glam::{Mat3A, Quat, Vec3A};
 
-use crate::voxel::DIRECTIONS;
-
 /// `b_k = Σ (X_k − X_o)` over the cell's edges at corner k: gathers `A_c Δ_e` to corners and differences to `F_c`.
 pub(super) const CORNER: [Vec3A; 8] = corner_vectors();
 
@@ -122,11 +120,10 @@ pub fn target(corners: [Vec3A; 8], q: Quat, size: f32, fidelity: f32) -> (Mat3A,
     (shape * (1.0 - fidelity) + volume * fidelity, q)
 }
 
-/// Invariant: the table above is what [`DIRECTIONS`] says.
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::voxel::KUHN;
+    use crate::voxel::{DIRECTIONS, KUHN};
 
     fn cell(m: Mat3A) -> [Vec3A; 8] {
         std::array::from_fn(|k| m * Vec3A::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2 & 1) as f32))

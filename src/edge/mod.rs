@@ -14,7 +14,8 @@ mod multigrid;
 mod solve;
 
 pub use multigrid::{Multigrid, Weights};
-pub use solve::{Solution, conjugate_gradients};
+pub use solve::{Solution, conjugate_gradients, dot};
+pub(crate) use solve::preconditioned;
 
 use glam::Vec3A;
 use rayon::prelude::*;
@@ -24,8 +25,10 @@ use crate::voxel::{Complex, DIRECTIONS, NEIGHBOURS};
 /// Nodes per parallel task. Fixed, so that sums are split in the same places for any number of threads.
 pub(crate) const CHUNK: usize = 2048;
 
-/// `b` of Eq. 1: `b_i = Σ_{e=(i,j)} f_e (v_i − v_j)`, f_e the mean of its ends; `importance` is `[nodes]`.
-pub fn right_hand_side(complex: &Complex, importance: &[f32], b: &mut Vec<Vec3A>) {
+/// What is left of Eq. 1's normal equations: `r_i = Σ_{e=(i,j)} (x_j − x_i) − f_e (v_j − v_i)`, f_e the mean of its ends.
+///
+/// Written in differences, so that rounding does not grow with the distance from the origin. `importance` is `[nodes]`.
+pub fn residual(complex: &Complex, importance: &[f32], x: &[Vec3A], r: &mut Vec<Vec3A>) {
     (0..complex.nodes())
         .into_par_iter()
         .with_min_len(CHUNK)
@@ -33,12 +36,14 @@ pub fn right_hand_side(complex: &Complex, importance: &[f32], b: &mut Vec<Vec3A>
             let mut sum = Vec3A::ZERO;
             for slot in 0..NEIGHBOURS {
                 let j = complex.neighbours[i][slot] as usize;
-                let f = 0.5 * (importance[i] + importance[j]);
-                sum += f * edge_from_neighbour(slot) * f32::from(u8::from(j != i));
+                if j != i {
+                    let f = 0.5 * (importance[i] + importance[j]);
+                    sum += x[j] - x[i] + f * edge_from_neighbour(slot);
+                }
             }
             sum
         })
-        .collect_into_vec(b);
+        .collect_into_vec(r);
 }
 
 /// `v_i − v_j` at rest for the neighbour j in `slot`.
@@ -51,23 +56,26 @@ pub(crate) fn edge_from_neighbour(slot: usize) -> Vec3A {
 #[derive(Debug, Clone)]
 pub struct EdgeSolver {
     multigrid: Multigrid,
-    b: Vec<Vec3A>,
+    residual: Vec<Vec3A>,
 }
 
-/// Relative residual at which Eq. 1 counts as solved. V' is then right to about 1e-4 of a cell, far below what is seen;
-/// f32 cannot give much less on large domains.
-pub const EDGE_TOLERANCE: f64 = 1.0e-5;
+/// Eq. 1 counts as solved when the force left on a node is below this (root mean square, in cells; an edge pulls with
+/// its length). V' is then right to about a hundredth of a cell even across a long body.
+pub const EDGE_TOLERANCE: f64 = 3.0e-5;
 
 impl EdgeSolver {
     /// Builds the multigrid hierarchy of the unit-weight Laplacian.
     pub fn new(complex: &Complex) -> Self {
-        Self { multigrid: Multigrid::new(complex, Weights::Unit), b: Vec::new() }
+        Self { multigrid: Multigrid::new(complex, Weights::Unit), residual: Vec::new() }
     }
 
     /// Solves Eq. 1 for the node importance, starting from `linear` (V' of before, or the rest positions).
     pub fn solve(&mut self, complex: &Complex, importance: &[f32], linear: &mut [Vec3A]) -> Solution {
-        right_hand_side(complex, importance, &mut self.b);
-        let solution = conjugate_gradients(&self.multigrid, &self.b, linear, EDGE_TOLERANCE, 200);
+        residual(complex, importance, linear, &mut self.residual);
+        let mut correction = vec![Vec3A::ZERO; complex.nodes()];
+        let goal = EDGE_TOLERANCE * (complex.nodes() as f64).sqrt();
+        let solution = conjugate_gradients(&self.multigrid, &mut self.residual, &mut correction, goal, 100);
+        linear.par_iter_mut().zip(&correction).with_min_len(CHUNK).for_each(|(x, d)| *x += *d);
         keep_centroids(complex, linear);
         solution
     }

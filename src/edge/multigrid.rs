@@ -40,8 +40,10 @@ pub(super) struct Level {
     pub neighbours: Vec<[u32; NEIGHBOURS]>,
     /// `[rows]` off-diagonal entries (negative for a Laplacian).
     pub off_diagonal: Vec<[f32; NEIGHBOURS]>,
-    /// `[rows]` diagonal entries, > 0.
+    /// `[rows]` diagonal entries, > 0, mass included.
     pub diagonal: Vec<f32>,
+    /// `[rows]` what the row sums to: zero for a Laplacian, then empty.
+    mass: Vec<f32>,
     /// `[rows]` the two coarse nodes a node is the middle of (the same twice where it is one).
     parents: Vec<[u32; 2]>,
     /// `[coarse rows]` fine nodes that a coarse node is a parent of, in compressed rows.
@@ -67,9 +69,11 @@ impl Level {
 
     #[inline]
     fn row(&self, x: &[Vec3A], i: usize) -> Vec3A {
-        let mut sum = self.diagonal[i] * x[i];
+        // In differences: what rounding leaves of a Laplacian then still sums to zero over all rows.
+        let own = x[i];
+        let mut sum = if self.mass.is_empty() { Vec3A::ZERO } else { self.mass[i] * own };
         for (&j, &a) in self.neighbours[i].iter().zip(&self.off_diagonal[i]) {
-            sum += a * x[j as usize];
+            sum += a * (x[j as usize] - own);
         }
         sum
     }
@@ -99,8 +103,13 @@ pub struct CycleMemory {
 }
 
 impl Multigrid {
-    /// Builds all levels.
+    /// Builds all levels of the Laplacian.
     pub fn new(complex: &Complex, weights: Weights) -> Self {
+        Self::with_mass(complex, weights, Vec::new())
+    }
+
+    /// Builds all levels of Laplacian + diagonal; `mass` is `[nodes]`, ≥ 0, or empty for none.
+    pub fn with_mass(complex: &Complex, weights: Weights, mass: Vec<f32>) -> Self {
         let mut off_diagonal = vec![[0.0_f32; NEIGHBOURS]; complex.nodes()];
         let mut diagonal = vec![0.0_f32; complex.nodes()];
         for i in 0..complex.nodes() {
@@ -110,11 +119,13 @@ impl Multigrid {
                 off_diagonal[i][slot] = -w;
                 diagonal[i] += w;
             }
+            diagonal[i] += mass.get(i).copied().unwrap_or(0.0);
         }
         let mut levels = vec![Level {
             neighbours: complex.neighbours.clone(),
             off_diagonal,
             diagonal,
+            mass,
             parents: Vec::new(),
             children_start: Vec::new(),
             children: Vec::new(),
@@ -259,6 +270,7 @@ fn coarsen(fine: &mut Level, positions: &[IVec3], cells: &[IVec3]) -> (Level, Ve
         neighbours: (0..n as u32).map(|i| [i; NEIGHBOURS]).collect(),
         off_diagonal: vec![[0.0; NEIGHBOURS]; n],
         diagonal: vec![0.0; n],
+        mass: Vec::new(),
         parents: Vec::new(),
         children_start: Vec::new(),
         children: Vec::new(),
@@ -285,13 +297,9 @@ fn galerkin(fine: &Level, coarse_positions: &[IVec3], coarse: &mut Level) {
                 columns[slot] = column;
                 entries[slot] += value;
             };
-            let weight = |node: usize, parent: u32| match fine.parents[node] {
-                [p, q] if p == parent && q == parent => 1.0,
-                _ => 0.5_f32,
-            };
             for &child in &fine.children[fine.children_start[row] as usize..fine.children_start[row + 1] as usize] {
                 let child = child as usize;
-                let left = weight(child, row as u32);
+                let left = weight_of(fine, child as u32, row);
                 let mut spread = |node: usize, value: f32| {
                     let [p, q] = fine.parents[node];
                     if p == q {
@@ -301,7 +309,8 @@ fn galerkin(fine: &Level, coarse_positions: &[IVec3], coarse: &mut Level) {
                         add(q, 0.5 * left * value);
                     }
                 };
-                spread(child, fine.diagonal[child]);
+                // Without the mass, which is lumped below.
+                spread(child, fine.diagonal[child] - fine.mass.get(child).copied().unwrap_or(0.0));
                 for slot in 0..NEIGHBOURS {
                     let value = fine.off_diagonal[child][slot];
                     if value != 0.0 {
@@ -317,6 +326,23 @@ fn galerkin(fine: &Level, coarse_positions: &[IVec3], coarse: &mut Level) {
         coarse.off_diagonal[row] = entries;
         coarse.diagonal[row] = diagonal.max(f32::MIN_POSITIVE);
     }
+    if !fine.mass.is_empty() {
+        // Lumped: the row sums of Pᵀ M P, since P keeps constants.
+        coarse.mass = (0..coarse.diagonal.len())
+            .map(|row| {
+                let children = &fine.children[fine.children_start[row] as usize..fine.children_start[row + 1] as usize];
+                children.iter().map(|&c| weight_of(fine, c, row) * fine.mass[c as usize]).sum()
+            })
+            .collect();
+        for (diagonal, mass) in coarse.diagonal.iter_mut().zip(&coarse.mass) {
+            *diagonal += mass;
+        }
+    }
+}
+
+/// The entry of P for a child and one of its parents.
+fn weight_of(fine: &Level, child: u32, parent: usize) -> f32 {
+    if fine.parents[child as usize] == [parent as u32; 2] { 1.0 } else { 0.5 }
 }
 
 /// The neighbour slot of a lattice offset, which is a Kuhn direction or the opposite of one.

@@ -1,0 +1,125 @@
+//! What benches and the "classic" view compare against: the paper's own scheme.
+//!
+//! Nothing here is certified; it is kept to show and to measure the difference.
+//!
+//! # Changes from the paper
+//! Fig. 5 as printed diverges: the target λ l_i starts at length 0, and half-corrections are summed over all edges of a
+//! node. [`Reading::Printed`] keeps that. [`Reading::Sensible`] interpolates the target from the rest length to l_i and
+//! averages the corrections.
+
+use glam::Vec3A;
+use rayon::prelude::*;
+
+use crate::{
+    collision::{Asked, Problem, contact_step, grow},
+    edge::{CHUNK, edge_from_neighbour},
+    voxel::{Complex, NEIGHBOURS},
+};
+
+/// Iterations of Fig. 5 in the paper.
+pub const ITERATIONS: usize = 1000;
+
+/// How Fig. 5 is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reading {
+    /// To the letter.
+    Printed,
+    /// Targets from the rest length on, corrections averaged.
+    Sensible,
+}
+
+/// Eq. 1 by Jacobi sweeps (Sec. 3.4; the paper uses 20), damped by one half since L is bipartite-like on axis edges.
+pub fn jacobi(complex: &Complex, importance: &[f32], sweeps: usize) -> Vec<Vec3A> {
+    let mut x = complex.rest.clone();
+    for _ in 0..sweeps {
+        x = (0..complex.nodes())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|i| {
+                let (mut sum, mut count) = (Vec3A::ZERO, 0.0);
+                for slot in 0..NEIGHBOURS {
+                    let j = complex.neighbours[i][slot] as usize;
+                    if j != i {
+                        let f = 0.5 * (importance[i] + importance[j]);
+                        sum += x[j] + f * edge_from_neighbour(slot);
+                        count += 1.0;
+                    }
+                }
+                x[i] + 0.9 * (sum / count - x[i])
+            })
+            .collect();
+    }
+    x
+}
+
+/// Fig. 5: edge lengths by projection, spheres pushed apart, `iterations` steps of λ. `linear` is V'.
+///
+/// `each` is called after every iteration with λ and the state; it returns whether to go on.
+pub fn fig5(
+    complex: &Complex,
+    problem: &Problem,
+    linear: &[Vec3A],
+    reading: Reading,
+    iterations: usize,
+    mut each: impl FnMut(f32, &[Vec3A]) -> bool,
+) -> Vec<Vec3A> {
+    let mut x = complex.rest.clone();
+    for t in 0..iterations {
+        let lambda = t as f32 / (iterations.max(2) - 1) as f32;
+        let moved: Vec<Vec3A> = (0..complex.nodes())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|i| {
+                let (mut sum, mut count) = (Vec3A::ZERO, 0.0);
+                for slot in 0..NEIGHBOURS {
+                    let j = complex.neighbours[i][slot] as usize;
+                    if j == i {
+                        continue;
+                    }
+                    let optimal = (linear[i] - linear[j]).length();
+                    let rest = edge_from_neighbour(slot).length();
+                    let target = match reading {
+                        Reading::Printed => lambda * optimal,
+                        Reading::Sensible => rest + lambda * (optimal - rest),
+                    };
+                    let edge = x[i] - x[j];
+                    sum += (target / edge.length() - 1.0) * edge * 0.5;
+                    count += 1.0;
+                }
+                x[i] + if reading == Reading::Printed { sum } else { sum / count }
+            })
+            .collect();
+        // Radii from the present state, as in Fig. 5.
+        let radius: Vec<f32> = (0..complex.nodes())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|i| {
+                complex.neighbours[i]
+                    .iter()
+                    .filter(|&&j| j as usize != i)
+                    .map(|&j| (moved[i] - moved[j as usize]).length())
+                    .fold(f32::INFINITY, f32::min)
+            })
+            .collect();
+        let finite = moved.iter().all(|p| p.is_finite());
+        if finite {
+            let contacts = contact_step(complex, problem, &Asked { size: Vec::new(), radius }, &moved);
+            x = (0..complex.nodes())
+                .into_par_iter()
+                .with_min_len(CHUNK)
+                .map(|i| moved[i] + contacts.of(i).iter().map(|c| 0.5 * c.depth * c.direction).sum::<Vec3A>())
+                .collect();
+        } else {
+            x = moved;
+        }
+        if !each(lambda, &x) || !finite {
+            break;
+        }
+    }
+    x
+}
+
+/// What Fig. 5 asks for at λ = 1, for measuring it like the product.
+pub fn asked(complex: &Complex, problem: &Problem) -> Asked {
+    grow(complex, problem, 1.0)
+}
