@@ -1,0 +1,57 @@
+//! STUB of the export; `report` is real.
+
+pub mod report;
+
+use crate::boundary::Boundary;
+use crate::{Error, Result};
+use glam::DVec3;
+use std::path::Path;
+
+/// STUB
+#[derive(Debug, Clone, Copy)]
+pub struct GrowthFrame<'a> {
+    /// λ
+    pub lambda: f32,
+    /// B'
+    pub positions: &'a [DVec3],
+}
+
+/// STUB
+///
+/// # Errors
+/// Writing.
+pub fn mesh(b: &Boundary, positions: &[DVec3], _colours: Option<&[[f32; 3]]>, path: &Path) -> Result<()> {
+    use std::fmt::Write;
+    let mut text = String::new();
+    for p in positions {
+        let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+    }
+    for t in &b.triangles {
+        let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
+    }
+    write_atomically(path, text.as_bytes())
+}
+
+/// STUB
+///
+/// # Errors
+/// Writing.
+pub fn growth(
+    b: &Boundary,
+    frames: &[GrowthFrame],
+    colours: Option<&[[f32; 3]]>,
+    _seconds: f32,
+    path: &Path,
+) -> Result<()> {
+    mesh(b, frames[0].positions, colours, path)
+}
+
+/// STUB
+///
+/// # Errors
+/// Writing.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+    let beside = path.with_extension("part");
+    std::fs::write(&beside, bytes).map_err(|e| Error::writing(path, e))?;
+    std::fs::rename(&beside, path).map_err(|e| Error::writing(path, e))
+}
