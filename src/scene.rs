@@ -16,6 +16,7 @@
 //! All but `version` and `source` may be left out. Layers apply in the order given.
 
 use std::fmt;
+use std::io::Write as _;
 use std::ops::Deref;
 use std::path::{Component, Path, PathBuf};
 
@@ -164,7 +165,8 @@ impl Scene {
         if !(1..=MAX_KEYS).contains(&draft.keys) {
             return Err(Error::input(format!("keys {} is not within 1 to {MAX_KEYS}", draft.keys)));
         }
-        if !draft.clamp && !(draft.base > 0.0 && draft.base.is_finite()) {
+        let base_may_be = draft.base > 0.0 && draft.base.is_finite();
+        if !(base_may_be || draft.clamp) {
             return Err(Error::input(format!("base {} is not greater than 0 and finite", draft.base)));
         }
         match &draft.source {
@@ -210,7 +212,7 @@ impl Scene {
         draft.map_files(|file| relative(file, folder));
         let pretty = ron::ser::PrettyConfig::new();
         let text = format().to_string_pretty(&draft, pretty).map_err(|e| Error::Fault(format!("scene to RON: {e}")))?;
-        export::write_atomically(path, format!("{text}\n").as_bytes())
+        export::write_atomically(path, |file| writeln!(file, "{text}"))
     }
 
     /// Every file the scene reads.

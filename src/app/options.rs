@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
-use crate::importance::Layer;
+use crate::importance::{Layer, Range};
 use crate::scene::{Draft, MAX_KEYS, MAX_RESOLUTION, MIN_RESOLUTION, Scene, Source};
 use crate::schedule::Reference;
 use crate::{Error, Result};
@@ -283,7 +283,7 @@ fn image(text: &str) -> Result<Layer, String> {
 }
 
 /// `NAME:LO..HI` in its parts. What follows the last colon is a range if it has two dots and no path separator.
-fn split_range(text: &str) -> Result<(&str, Option<(f32, f32)>), String> {
+fn split_range(text: &str) -> Result<(&str, Option<Range>), String> {
     let Some((name, range)) = text.rsplit_once(':') else { return Ok((text, None)) };
     let Some((low, high)) = range.split_once("..") else { return Ok((text, None)) };
     if range.contains(['/', '\\']) {

@@ -8,7 +8,7 @@ use super::{Verdict, cancel, note, progress, say};
 use crate::boundary::{self, Boundary};
 use crate::export::report::{self, Report};
 use crate::export::{self, GrowthFrame};
-use crate::importance::{self, Stack};
+use crate::importance::{self, Layer, Stack};
 use crate::scene::{Scene, Source};
 use crate::schedule::{self, Outcome, Settings};
 use crate::{Error, Result, gallery};
@@ -25,7 +25,8 @@ pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     cancel::listen();
 
     let mut boundary = open(&scene.source)?;
-    let stack = Stack::load(&scene.layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
+    let layers = layers(&scene, &boundary);
+    let stack = Stack::load(&layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
     if let Some(regions) = stack.regions() {
         boundary.regions = Some(regions.clone());
     }
@@ -62,6 +63,16 @@ pub(super) fn open(source: &Source) -> Result<Boundary> {
         Source::File(path) => boundary::read(path),
         Source::Gallery(name) => gallery::open(name),
     }
+}
+
+/// The scene's layers. A built-in model brings its own importance, an attribute of that name, for when none is ordered.
+fn layers(scene: &Scene, boundary: &Boundary) -> Vec<Layer> {
+    let own = Layer::Attribute { name: "importance".into(), range: None };
+    let is_gallery = matches!(scene.source, Source::Gallery(_));
+    if is_gallery && scene.layers.is_empty() && boundary.attributes.iter().any(|a| a.name == "importance") {
+        return vec![own];
+    }
+    scene.layers.clone()
 }
 
 fn warnings(boundary: &Boundary, stack: &Stack) -> Vec<String> {

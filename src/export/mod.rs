@@ -21,7 +21,7 @@ pub struct GrowthFrame<'a> {
 /// # Errors
 /// Writing.
 pub fn mesh(b: &Boundary, positions: &[DVec3], _colours: Option<&[[f32; 3]]>, path: &Path) -> Result<()> {
-    use std::fmt::Write;
+    use std::fmt::Write as _;
     let mut text = String::new();
     for p in positions {
         let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
@@ -29,7 +29,8 @@ pub fn mesh(b: &Boundary, positions: &[DVec3], _colours: Option<&[[f32; 3]]>, pa
     for t in &b.triangles {
         let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
     }
-    write_atomically(path, text.as_bytes())
+    use std::io::Write as _;
+    write_atomically(path, |file| file.write_all(text.as_bytes()))
 }
 
 /// STUB
@@ -50,8 +51,16 @@ pub fn growth(
 ///
 /// # Errors
 /// Writing.
-pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
-    let beside = path.with_extension("part");
-    std::fs::write(&beside, bytes).map_err(|e| Error::writing(path, e))?;
-    std::fs::rename(&beside, path).map_err(|e| Error::writing(path, e))
+pub fn write_atomically(
+    path: &Path,
+    write: impl FnOnce(&mut std::io::BufWriter<&mut std::fs::File>) -> std::io::Result<()>,
+) -> Result<()> {
+    use std::io::Write as _;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut temporary = tempfile::NamedTempFile::new_in(folder).map_err(|e| Error::writing(path, e))?;
+    let mut buffered = std::io::BufWriter::new(temporary.as_file_mut());
+    write(&mut buffered).and_then(|()| buffered.flush()).map_err(|e| Error::writing(path, e))?;
+    drop(buffered);
+    temporary.persist(path).map_err(|e| Error::writing(path, e.error))?;
+    Ok(())
 }

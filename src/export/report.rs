@@ -1,5 +1,6 @@
 //! The report: what was asked, achieved and proven, as JSON. Others script by these keys; they stay.
 
+use std::io::Write as _;
 use std::path::Path;
 
 use serde::Serialize;
@@ -216,7 +217,7 @@ impl Report {
 pub fn write(report: &Report, path: &Path) -> Result<()> {
     let mut text = serde_json::to_vec_pretty(report).map_err(|e| Error::Fault(format!("report to JSON: {e}")))?;
     text.push(b'\n');
-    write_atomically(path, &text)
+    write_atomically(path, |file| file.write_all(&text))
 }
 
 impl From<&InputSummary> for InputReport {

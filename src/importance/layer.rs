@@ -13,7 +13,10 @@ pub const CLAMP_MIN: f32 = 0.05;
 pub const CLAMP_MAX: f32 = 20.0;
 
 /// What an image's black and white mean where no range is given: half and twice the length.
-pub const IMAGE_RANGE: (f32, f32) = (0.5, 2.0);
+pub const IMAGE_RANGE: Range = (0.5, 2.0);
+
+/// Importance at the least and at the greatest value of what is mapped; the other way round is fine.
+pub type Range = (f32, f32);
 
 /// One statement about importance. Layers apply in the order given, each over what is below it.
 ///
@@ -36,7 +39,7 @@ pub enum Layer {
         name: String,
         /// Importance at the attribute's least and greatest value; without it the attribute is importance itself.
         #[serde(default)]
-        range: Option<(f32, f32)>,
+        range: Option<Range>,
     },
     /// A CSV table `vertex,importance`; the vertices listed are set, the others keep what is below.
     Values {
@@ -56,7 +59,7 @@ pub enum Layer {
         path: PathBuf,
         /// Importance of black and of white; [`IMAGE_RANGE`] where absent.
         #[serde(default)]
-        range: Option<(f32, f32)>,
+        range: Option<Range>,
     },
 }
 

@@ -33,7 +33,7 @@ use picture::Picture;
 use sphere::Sphere;
 
 pub use colour::colours;
-pub use layer::{CLAMP_MAX, CLAMP_MIN, IMAGE_RANGE, Layer};
+pub use layer::{CLAMP_MAX, CLAMP_MIN, IMAGE_RANGE, Layer, Range};
 pub use sphere::falloff;
 
 /// A point on the boundary's surface where importance is asked for.
@@ -194,7 +194,7 @@ impl Stack {
         }
     }
 
-    fn attribute(&mut self, name: &str, range: Option<(f32, f32)>, boundary: &Boundary) -> Result<Ready> {
+    fn attribute(&mut self, name: &str, range: Option<Range>, boundary: &Boundary) -> Result<Ready> {
         let Some(attribute) = boundary.attributes.iter().find(|a| a.name == name) else {
             let names: Vec<_> = boundary.attributes.iter().map(|a| format!("`{}`", a.name)).collect();
             let known = if names.is_empty() { "it has none".into() } else { format!("it has {}", names.join(", ")) };
@@ -230,7 +230,7 @@ impl Stack {
         Ok(self.admission.admit(value, &value.to_string(), place)?.unwrap_or(1.0))
     }
 
-    fn admit_range(&mut self, (low, high): (f32, f32), place: impl Fn() -> String) -> Result<(f64, f64)> {
+    fn admit_range(&mut self, (low, high): Range, place: impl Fn() -> String) -> Result<(f64, f64)> {
         Ok((f64::from(self.admit(low, &place)?), f64::from(self.admit(high, &place)?)))
     }
 
