@@ -13,13 +13,13 @@
 //!   length of the file before anything is reserved.
 //! - Whatever [`crate::export`] needs to write the same file with other positions is kept in a private part of [`Boundary`].
 
-mod format;
+pub(crate) mod format;
 mod gltf;
-mod mtl;
+pub(crate) mod mtl;
 mod obj;
 mod off;
 mod ply;
-mod ply_table;
+pub(crate) mod ply_table;
 mod soup;
 pub(crate) mod source;
 mod stl;
@@ -31,7 +31,10 @@ use glam::{DVec3, Vec2};
 
 use crate::error::{Error, Result};
 pub(crate) use format::Kind;
+pub(crate) use obj::{ObjText, face_corners};
+pub(crate) use off::{OffText, content as off_content};
 pub(crate) use source::Source;
+pub(crate) use stl::StlKind;
 
 /// The boundary surface B: what was read from a file or modelled by the gallery.
 ///

@@ -1,7 +1,7 @@
 //! Numbers out of buffers, with every offset checked.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
+use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -22,6 +22,25 @@ pub(super) struct Buffers<'a> {
     loaded: HashMap<&'a str, Rc<Vec<u8>>>,
     /// How many more numbers may be decoded: instances and defaults make more of a file than it holds.
     budget: usize,
+}
+
+/// Bytes within the file itself, or within one that it refers to.
+pub(super) enum Bytes<'a> {
+    /// Of the GLB's own chunk.
+    Own(&'a [u8]),
+    /// A range, in bounds, of another file or a data URI.
+    Other(Rc<Vec<u8>>, Range<usize>),
+}
+
+impl Deref for Bytes<'_> {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Own(bytes) => bytes,
+            Self::Other(bytes, range) => bytes.get(range.clone()).unwrap_or_default(),
+        }
+    }
 }
 
 /// `[count * width]` numbers of an accessor.
@@ -46,11 +65,6 @@ impl<'a> Buffers<'a> {
         Self { folder, document, binary, loaded: HashMap::new(), budget: FREE_NUMBERS.saturating_add(file_size.saturating_mul(16)) }
     }
 
-    /// The folder of the file.
-    pub fn folder(&self) -> &Path {
-        &self.folder
-    }
-
     /// The bytes of a data URI or of a file.
     pub fn resource(&mut self, uri: &'a str) -> Result<Rc<Vec<u8>>, String> {
         if let Some(bytes) = self.loaded.get(uri) {
@@ -69,8 +83,14 @@ impl<'a> Buffers<'a> {
         Ok(bytes)
     }
 
+    /// Accounts for bytes that are copied out of the buffers.
+    pub fn spend(&mut self, bytes: usize) -> Result<(), String> {
+        self.budget = self.budget.checked_sub(bytes).ok_or("its images are many times larger than the file")?;
+        Ok(())
+    }
+
     /// The bytes of a buffer view.
-    pub fn view(&mut self, index: usize) -> Result<Cow<'a, [u8]>, String> {
+    pub fn view(&mut self, index: usize) -> Result<Bytes<'a>, String> {
         let document = self.document;
         let view = document.buffer_views.get(index).ok_or_else(|| no_such("buffer view", index, document.buffer_views.len()))?;
         let buffer = document.buffers.get(view.buffer).ok_or_else(|| no_such("buffer", view.buffer, document.buffers.len()))?;
@@ -81,14 +101,17 @@ impl<'a> Buffers<'a> {
         match &buffer.uri {
             None => {
                 let bytes = self.binary.filter(|_| view.buffer == 0).ok_or_else(|| format!("buffer {} has no content; export the scene again", view.buffer))?;
-                bytes.get(range.clone()).map(Cow::Borrowed).ok_or_else(|| short(bytes.len()))
+                bytes.get(range.clone()).map(Bytes::Own).ok_or_else(|| short(bytes.len()))
             }
             Some(uri) => {
                 let bytes = self.resource(uri)?;
                 if bytes.len() < buffer.byte_length {
                     return Err(format!("buffer {} should have {} bytes and has {}; get the whole file again", view.buffer, buffer.byte_length, bytes.len()));
                 }
-                bytes.get(range.clone()).map(|part| Cow::Owned(part.to_vec())).ok_or_else(|| short(bytes.len()))
+                match bytes.get(range.clone()) {
+                    Some(_) => Ok(Bytes::Other(bytes, range)),
+                    None => Err(short(bytes.len())),
+                }
             }
         }
     }

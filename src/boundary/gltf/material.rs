@@ -50,8 +50,8 @@ fn image<'a>(index: usize, document: &'a Document, buffers: &mut Buffers<'a>, wa
     let by_uri = file.uri.as_deref().filter(|uri| !uri.starts_with("data:")).map(percent_decoded);
     let name = file.name.clone().or(by_uri).unwrap_or_else(|| format!("image {index}"));
     let bytes = match (&file.uri, file.buffer_view) {
-        (Some(uri), _) => buffers.resource(uri).map(|bytes| bytes.to_vec()),
-        (None, Some(view)) => buffers.view(view).map(std::borrow::Cow::into_owned),
+        (Some(uri), _) => buffers.resource(uri).and_then(|bytes| buffers.spend(bytes.len()).map(|()| bytes.to_vec())),
+        (None, Some(view)) => buffers.view(view).and_then(|bytes| buffers.spend(bytes.len()).map(|()| bytes.to_vec())),
         (None, None) => Err("it has no content".into()),
     };
     match bytes {
