@@ -196,10 +196,11 @@ impl Scene {
             let sentence = format!("scene version {version} is not known; this program reads {VERSION}");
             return Err(Error::in_file(path, sentence));
         }
-        let mut draft: Draft = format().from_str(&text).map_err(misread)?;
+        let draft = format().from_str(&text).map_err(misread)?;
+        let Self(mut draft) = Self::new(draft).map_err(|e| Error::in_file(path, e))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         draft.map_files(|file| folder.join(file));
-        Self::new(draft).map_err(|e| Error::in_file(path, e))
+        Ok(Self(draft))
     }
 
     /// Writes a scene file; its paths are written relative to it.

@@ -231,21 +231,30 @@ fn a_sample_out_of_range_gets_the_base() {
     assert!(near(&found, &[1.5]), "{found:?}");
 }
 
-/// The square as OBJ, where v points up, under a picture that is white in its upper right quarter, half transparent in its
-/// upper left, and black below: importance at the corners.
-fn under_picture(flip: bool) -> Vec<f32> {
-    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
-    let folder = folder(&[("square.obj", square)]);
+/// A picture that is white in its upper right quarter, transparent in its upper left, and black below; or upside down.
+fn save_picture(folder: &Path, flip: bool) {
     let mut picture = image::RgbaImage::from_pixel(8, 8, image::Rgba([0, 0, 0, 255]));
     for (x, y, pixel) in picture.enumerate_pixels_mut() {
         if (y < 4) != flip {
             *pixel = if x < 4 { image::Rgba([255, 255, 255, 0]) } else { image::Rgba([255; 4]) };
         }
     }
-    picture.save(folder.path().join("map.png")).unwrap();
-    let boundary = boundary::read(&folder.path().join("square.obj")).unwrap();
+    picture.save(folder.join("map.png")).unwrap();
+}
+
+/// Importance at the vertices of a mesh under the picture, 1.5 where it is transparent.
+fn picture_at_corners(folder: &Path, mesh: &str) -> Vec<f32> {
+    let boundary = boundary::read(&folder.join(mesh)).unwrap();
     let layer = Layer::Image { path: "map.png".into(), range: Some((0.5, 3.0)) };
-    Stack::load(&[layer], 1.5, false, &boundary, folder.path()).unwrap().at_vertices(&boundary)
+    Stack::load(&[layer], 1.5, false, &boundary, folder).unwrap().at_vertices(&boundary)
+}
+
+/// The square as OBJ, where v points up.
+fn under_picture(flip: bool) -> Vec<f32> {
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    let folder = folder(&[("square.obj", square)]);
+    save_picture(folder.path(), flip);
+    picture_at_corners(folder.path(), "square.obj")
 }
 
 #[test]
@@ -256,6 +265,54 @@ fn pictures_stand_upright() {
 #[test]
 fn sabotage_an_inverted_picture_is_seen() {
     assert!(!near(&under_picture(true), &[0.5, 0.5, 3.0, 1.5]));
+}
+
+/// The same square as glTF, where v points down; texture coordinates as in the OBJ, seen from the other end.
+#[test]
+fn pictures_stand_upright_on_gltf_too() {
+    let floats = [
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0].as_slice(),
+        [0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0].as_slice(),
+    ];
+    let mut bytes: Vec<u8> = floats.concat().iter().flat_map(|f: &f32| f.to_le_bytes()).collect();
+    bytes.extend([0u16, 1, 2, 0, 2, 3].iter().flat_map(|i| i.to_le_bytes()));
+    let accessor = |view: u32, kind: &str, component: u32, count: u32| {
+        serde_json::json!({ "bufferView": view, "type": kind, "componentType": component, "count": count,
+            "min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 0.0] })
+    };
+    let gltf = serde_json::json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "byteLength": bytes.len(), "uri": "square.bin" }],
+        "bufferViews": [
+            { "buffer": 0, "byteOffset": 0, "byteLength": 48 },
+            { "buffer": 0, "byteOffset": 48, "byteLength": 32 },
+            { "buffer": 0, "byteOffset": 80, "byteLength": 12 },
+        ],
+        "accessors": [accessor(0, "VEC3", 5126, 4), accessor(1, "VEC2", 5126, 4), accessor(2, "SCALAR", 5123, 6)],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2 }] }],
+        "nodes": [{ "mesh": 0 }],
+        "scenes": [{ "nodes": [0] }],
+        "scene": 0,
+    });
+    let folder = folder(&[("square.gltf", &gltf.to_string())]);
+    std::fs::write(folder.path().join("square.bin"), bytes).unwrap();
+    save_picture(folder.path(), false);
+    assert_eq!(picture_at_corners(folder.path(), "square.gltf").len(), 4);
+    assert!(near(&picture_at_corners(folder.path(), "square.gltf"), &[0.5, 0.5, 3.0, 1.5]));
+}
+
+#[test]
+fn each_side_of_a_seam_sees_its_own_part_of_the_picture() {
+    // Both triangles of the square lie on the whole of the picture's left half and right half in turn.
+    let square =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.2 0.2\nvt 0.8 0.2\nvt 0.8 0.8\nf 1/1 2/1 3/1\nf 1/3 3/3 4/3\n";
+    let folder = folder(&[("square.obj", square)]);
+    save_picture(folder.path(), false);
+    let boundary = boundary::read(&folder.path().join("square.obj")).unwrap();
+    let layer = Layer::Image { path: "map.png".into(), range: Some((0.5, 3.0)) };
+    let stack = Stack::load(&[layer], 1.5, false, &boundary, folder.path()).unwrap();
+    let at_vertex_0 = |triangle| Sample { triangle, weights: [1.0, 0.0, 0.0] };
+    assert!(near(&stack.evaluate(&boundary, &[at_vertex_0(0), at_vertex_0(1)]), &[0.5, 3.0]));
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use crate::boundary::source::linear_from_srgb;
+
 /// A colour for each importance: viridis, which is perceptually uniform and survives grey printing and colour
 /// blindness, over `ln f` from the least to the greatest value given (so ×2 is as long a step anywhere).
 ///
@@ -23,11 +25,6 @@ pub fn colours(importance: &[f32]) -> Vec<[f32; 3]> {
 fn viridis(t: f64) -> [f32; 3] {
     let colour = colorous::VIRIDIS.eval_continuous(t);
     [colour.r, colour.g, colour.b].map(|c| linear_from_srgb(f32::from(c) / 255.0))
-}
-
-/// IEC 61966-2-1 decoding of one channel.
-fn linear_from_srgb(c: f32) -> f32 {
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]

@@ -74,12 +74,21 @@ fn neighbours(t: f64, texels: usize) -> (usize, usize, f64) {
     (first, (first + 1).min(last), position - first as f64)
 }
 
-/// `[triangles]` texture coordinates of the corners, `v` down; `None` for triangles that have none.
+/// `[triangles]` texture coordinates of the corners, `v` down; `None` for triangles that have none. A vertex on a seam
+/// has several, one for each side.
 pub(super) fn corner_uvs(boundary: &Boundary) -> Option<Vec<Option<[Vec2; 3]>>> {
-    let of_vertex = boundary.vertex_uvs()?;
-    let at = |v: u32| of_vertex.get(v as usize).copied().flatten().filter(|uv| uv.is_finite());
-    let corners = |t: &[u32; 3]| Some([at(t[0])?, at(t[1])?, at(t[2])?]);
-    Some(boundary.triangles.iter().map(corners).collect())
+    let source = &boundary.source;
+    if source.uvs.is_empty() {
+        return None;
+    }
+    let uv_of_corner = |corner: u32| {
+        let uv = *source.corner_uvs.get(corner as usize)?;
+        source.uvs.get(uv as usize).copied().filter(|uv| uv.is_finite())
+    };
+    let corners = |[a, b, c]: &[u32; 3]| Some([uv_of_corner(*a)?, uv_of_corner(*b)?, uv_of_corner(*c)?]);
+    let mut uvs: Vec<_> = source.triangle_corners.iter().map(corners).collect();
+    uvs.resize(boundary.triangles.len(), None);
+    Some(uvs)
 }
 
 #[cfg(test)]
