@@ -1,6 +1,41 @@
 //! 3.1  **B**, the boundary: meshes in.
+//!
+//! [`read`] takes glTF (`.gltf`, `.glb`), OBJ, PLY, STL and OFF. The format is recognised by what the file says,
+//! and by its extension only where the content leaves it open.
+//!
+//! # What is promised
+//!
+//! - Vertices keep the order of the file, triangles the order of the file's faces; nothing is merged, dropped or reordered.
+//!   An STL stays a soup: three vertices for each triangle.
+//! - Positions are what the file says, in its units. glTF scenes are taken as a viewer shows them at rest: node transforms,
+//!   skins and default morph weights are baked into world positions.
+//! - No file makes this panic, hang or allocate much more than its own size: a header's claims are checked against the
+//!   length of the file before anything is reserved.
+//! - Whatever [`crate::export`] needs to write the same file with other positions is kept in a private part of [`Boundary`].
+
+pub(crate) mod format;
+mod gltf;
+pub(crate) mod mtl;
+mod obj;
+mod off;
+mod ply;
+pub(crate) mod ply_table;
+mod soup;
+pub(crate) mod source;
+mod stl;
+mod triangulate;
+
+use std::path::Path;
 
 use glam::{DVec3, Vec2};
+
+use crate::error::{Error, Result};
+pub(crate) use format::Kind;
+pub(crate) use obj::{ObjText, face_corners};
+pub(crate) use off::{OffText, content as off_content};
+pub(crate) use soup::Sets;
+pub(crate) use source::Source;
+pub(crate) use stl::StlKind;
 
 /// The boundary surface B: what was read from a file or modelled by the gallery.
 ///
@@ -17,6 +52,10 @@ pub struct Boundary {
     pub attributes: Vec<Attribute>,
     /// Named sets of vertices, with a region index or `u32::MAX` for each vertex.
     pub regions: Option<Regions>,
+    /// What was read otherwise than the file says (a texture that is missing, …): one sentence each.
+    pub warnings: Vec<String>,
+    /// What the export needs beyond the above: polygons, corners, materials, the original text.
+    pub(crate) source: Source,
 }
 
 /// One named per-vertex scalar.
@@ -24,7 +63,7 @@ pub struct Boundary {
 pub struct Attribute {
     /// Its name in the file, for example `quality`, `_PRESSURE`, `red`, `COLOR_0.r`.
     pub name: String,
-    /// `[vertices]`, as in the file (colours as 0..=1).
+    /// `[vertices]`, as in the file (colours as 0..=1); not a number where the file says so.
     pub values: Vec<f32>,
 }
 
@@ -37,6 +76,27 @@ pub struct Regions {
     pub of_vertex: Vec<u32>,
 }
 
+/// Reads a boundary from a mesh file.
+///
+/// # Errors
+///
+/// [`Error::File`] where the system refuses, [`Error::Input`] where the content cannot be used: one sentence with the file,
+/// the line or element, and what to do. A file whose triangles all have zero area is refused too.
+pub fn read(path: &Path) -> Result<Boundary> {
+    let bytes = format::load(path)?;
+    let mut boundary = match format::recognise(path, &bytes)? {
+        Kind::Gltf => gltf::read(path, &bytes)?,
+        Kind::Obj => obj::read(path, &bytes)?,
+        Kind::Ply => ply::read(path, &bytes)?,
+        Kind::Stl => stl::read(path, &bytes)?,
+        Kind::Off => off::read(path, &bytes)?,
+    };
+    boundary.name = path.file_stem().map_or_else(|| "mesh".into(), |stem| stem.to_string_lossy().into_owned());
+    boundary.source.folder = path.parent().map(Path::to_path_buf);
+    boundary.check(path)?;
+    Ok(boundary)
+}
+
 impl Boundary {
     /// A boundary from bare triangles (gallery models, tests).
     pub fn from_triangles(name: &str, positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
@@ -44,7 +104,84 @@ impl Boundary {
     }
 
     /// `[vertices]` texture coordinates: the first one used by each vertex, `None` where it has none.
+    ///
+    /// `(0, 0)` is the upper left corner of the image and v grows downwards, as in glTF.
     pub fn vertex_uvs(&self) -> Option<Vec<Option<Vec2>>> {
-        None
+        let source = &self.source;
+        if source.uvs.is_empty() {
+            return None;
+        }
+        let mut uvs = vec![None; self.positions.len()];
+        for (&vertex, &uv) in source.polygons.corners.iter().zip(&source.corner_uvs) {
+            if let Some(slot) = uvs.get_mut(vertex as usize) {
+                *slot = slot.or_else(|| source.uvs.get(uv as usize).copied());
+            }
+        }
+        Some(uvs)
+    }
+
+    /// `[vertices]` linear RGBA in 0..=1 where the file has a colour for each vertex. What is not a number reads as 1.
+    ///
+    /// glTF colours are linear already; those of OBJ, PLY and OFF are taken as sRGB, which is what their writers mean.
+    pub fn base_colours(&self) -> Option<Vec<[f32; 4]>> {
+        let channel = |name: &str| self.attributes.iter().find(|a| a.name == name).map(|a| a.values.as_slice());
+        let names = source::COLOUR_CHANNELS.iter().find(|names| channel(names[0]).is_some())?;
+        let (red, green, blue) = (channel(names[0])?, channel(names[1])?, channel(names[2])?);
+        let alpha = channel(names[3]);
+        let srgb = names[0] == "red";
+        let clean = |value: f32| if value.is_finite() { value.clamp(0.0, 1.0) } else { 1.0 };
+        let linear = |value: f32| if srgb { source::linear_from_srgb(clean(value)) } else { clean(value) };
+        let at = |values: &[f32], vertex: usize| values.get(vertex).copied().unwrap_or(1.0);
+        let colour = |vertex: usize| {
+            let opacity = alpha.map_or(1.0, |values| clean(at(values, vertex)));
+            [linear(at(red, vertex)), linear(at(green, vertex)), linear(at(blue, vertex)), opacity]
+        };
+        Some((0..self.positions.len()).map(colour).collect())
+    }
+
+    /// Whether indices are in range, positions finite, and arrays of one length.
+    pub fn is_sound(&self) -> bool {
+        let count = self.positions.len();
+        self.positions.iter().all(|p| p.is_finite())
+            && self.triangles.iter().flatten().all(|&v| (v as usize) < count)
+            && self.attributes.iter().all(|a| a.values.len() == count)
+            && self.regions.as_ref().is_none_or(|r| {
+                r.of_vertex.len() == count && r.of_vertex.iter().all(|&i| i == u32::MAX || (i as usize) < r.names.len())
+            })
+            && self.source.is_sound(count, self.triangles.len())
+    }
+
+    /// What no format may leave behind: nothing to warp, positions that are no numbers, broken indices.
+    fn check(&self, path: &Path) -> Result<()> {
+        if self.positions.is_empty() {
+            return Err(Error::in_file(path, "there are no vertices in it; export the mesh again with its geometry"));
+        }
+        if let Some(vertex) = self.positions.iter().position(|p| !p.is_finite()) {
+            let p = self.positions[vertex];
+            return Err(Error::in_file(
+                path,
+                format!("vertex {vertex} is at ({}, {}, {}), which is no place; repair the file or remove that vertex", p.x, p.y, p.z),
+            ));
+        }
+        if self.triangles.is_empty() {
+            let sentence = format!("it has {} vertices but no faces, so it bounds nothing; reconstruct a surface first", self.positions.len());
+            return Err(Error::in_file(path, sentence));
+        }
+        if !self.triangles.iter().any(|t| self.is_proper(t)) {
+            let sentence = format!("each of its {} triangles has zero area; check the scale and the axes it was exported with", self.triangles.len());
+            return Err(Error::in_file(path, sentence));
+        }
+        if !self.is_sound() {
+            return Err(Error::Fault(format!("reading {} left indices out of range", path.display())));
+        }
+        Ok(())
+    }
+
+    /// Whether a triangle has an area that is not zero, at any scale: the sides are divided by the longest first.
+    fn is_proper(&self, &[a, b, c]: &[u32; 3]) -> bool {
+        let [a, b, c] = [a, b, c].map(|v| self.positions[v as usize]);
+        let (ab, ac) = (b - a, c - a);
+        let scale = ab.abs().max(ac.abs()).max_element();
+        scale > 0.0 && scale.is_finite() && (ab / scale).cross(ac / scale) != DVec3::ZERO
     }
 }

@@ -222,13 +222,13 @@ fn positive([a, b, c, d]: [Vec3A; 4]) -> bool {
     orientation(a.as_dvec3(), b.as_dvec3(), c.as_dvec3(), d.as_dvec3()) > 0
 }
 
-/// Shortens steps longer than `limit` (per node, in cells).
-pub fn limit(current: &[Vec3A], proposed: &mut [Vec3A], limit: impl Fn(usize) -> f32 + Sync) {
-    proposed.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(i, p)| {
-        let step = *p - current[i];
-        let (length, most) = (step.length(), limit(i));
+/// Shortens steps longer than `most`, in cells.
+pub fn limit(current: &[Vec3A], proposed: &mut [Vec3A], most: f32) {
+    proposed.par_iter_mut().zip(current).with_min_len(CHUNK).for_each(|(p, x)| {
+        let step = *p - *x;
+        let length = step.length();
         if length > most {
-            *p = current[i] + step * (most / length);
+            *p = *x + step * (most / length);
         }
     });
 }

@@ -15,7 +15,9 @@
 
 pub mod contact;
 pub mod guard;
+pub mod growth;
 pub mod local;
+pub mod plugin;
 
 use glam::{DMat3, DVec3, Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
@@ -25,6 +27,7 @@ use crate::{
     voxel::Complex,
 };
 pub use contact::Contacts;
+pub use growth::Growth;
 pub use guard::{Guarded, Shell};
 
 /// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing

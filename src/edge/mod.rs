@@ -11,6 +11,7 @@
 //! preconditioned by one multigrid cycle, from the last solution.
 
 mod multigrid;
+pub mod plugin;
 mod solve;
 
 pub use multigrid::{Multigrid, Weights};

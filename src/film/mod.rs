@@ -4,6 +4,8 @@
 //! linear blend, which need not be injective because both ends are: blends are checked as well, and where one fails the
 //! film keeps more of what was solved between.
 
+pub mod plugin;
+
 use glam::Vec3A;
 use rayon::prelude::*;
 

@@ -7,11 +7,13 @@
 //! node. [`Reading::Printed`] keeps that. [`Reading::Sensible`] interpolates the target from the rest length to l_i and
 //! averages the corrections.
 
+pub mod plugin;
+
 use glam::Vec3A;
 use rayon::prelude::*;
 
 use crate::{
-    collision::{Asked, Problem, contact_step, grow},
+    collision::{Asked, Problem, contact_step},
     edge::{CHUNK, edge_from_neighbour},
     voxel::{Complex, NEIGHBOURS},
 };
@@ -52,74 +54,40 @@ pub fn jacobi(complex: &Complex, importance: &[f32], sweeps: usize) -> Vec<Vec3A
     x
 }
 
-/// Fig. 5: edge lengths by projection, spheres pushed apart, `iterations` steps of λ. `linear` is V'.
-///
-/// `each` is called after every iteration with λ and the state; it returns whether to go on.
+/// One iteration of Fig. 5 at λ: edge lengths by projection, spheres pushed apart. `linear` is V'.
 pub fn fig5(
     complex: &Complex,
     problem: &Problem,
     linear: &[Vec3A],
     reading: Reading,
-    iterations: usize,
-    mut each: impl FnMut(f32, &[Vec3A]) -> bool,
+    lambda: f32,
+    x: &[Vec3A],
 ) -> Vec<Vec3A> {
-    let mut x = complex.rest.clone();
-    for t in 0..iterations {
-        let lambda = t as f32 / (iterations.max(2) - 1) as f32;
-        let moved: Vec<Vec3A> = (0..complex.nodes())
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .map(|i| {
-                let (mut sum, mut count) = (Vec3A::ZERO, 0.0);
-                for slot in 0..NEIGHBOURS {
-                    let j = complex.neighbours[i][slot] as usize;
-                    if j == i {
-                        continue;
-                    }
-                    let optimal = (linear[i] - linear[j]).length();
-                    let rest = edge_from_neighbour(slot).length();
-                    let target = match reading {
-                        Reading::Printed => lambda * optimal,
-                        Reading::Sensible => rest + lambda * (optimal - rest),
-                    };
-                    let edge = x[i] - x[j];
-                    sum += (target / edge.length() - 1.0) * edge * 0.5;
-                    count += 1.0;
-                }
-                x[i] + if reading == Reading::Printed { sum } else { sum / count }
-            })
-            .collect();
-        // Radii from the present state, as in Fig. 5.
-        let radius: Vec<f32> = (0..complex.nodes())
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .map(|i| {
-                complex.neighbours[i]
-                    .iter()
-                    .filter(|&&j| j as usize != i)
-                    .map(|&j| (moved[i] - moved[j as usize]).length())
-                    .fold(f32::INFINITY, f32::min)
-            })
-            .collect();
-        let finite = moved.iter().all(|p| p.is_finite());
-        if finite {
-            let contacts = contact_step(complex, problem, &Asked { size: Vec::new(), radius }, &moved);
-            x = (0..complex.nodes())
-                .into_par_iter()
-                .with_min_len(CHUNK)
-                .map(|i| moved[i] + contacts.of(i).iter().map(|c| 0.5 * c.depth * c.direction).sum::<Vec3A>())
-                .collect();
-        } else {
-            x = moved;
-        }
-        if !each(lambda, &x) || !finite {
-            break;
-        }
+    let nodes = || (0..complex.nodes()).into_par_iter().with_min_len(CHUNK);
+    let neighbours = |i: usize| complex.neighbours[i].iter().copied().enumerate().filter(move |&(_, j)| j as usize != i);
+    let moved: Vec<Vec3A> = nodes()
+        .map(|i| {
+            let (mut sum, mut count) = (Vec3A::ZERO, 0.0);
+            for (slot, j) in neighbours(i) {
+                let optimal = (linear[i] - linear[j as usize]).length();
+                let rest = edge_from_neighbour(slot).length();
+                let target = match reading {
+                    Reading::Printed => lambda * optimal,
+                    Reading::Sensible => rest + lambda * (optimal - rest),
+                };
+                let edge = x[i] - x[j as usize];
+                sum += (target / edge.length() - 1.0) * edge * 0.5;
+                count += 1.0;
+            }
+            x[i] + if reading == Reading::Printed { sum } else { sum / count }
+        })
+        .collect();
+    if !moved.iter().all(|p| p.is_finite()) {
+        return moved;
     }
-    x
-}
-
-/// What Fig. 5 asks for at λ = 1, for measuring it like the product.
-pub fn asked(complex: &Complex, problem: &Problem) -> Asked {
-    grow(complex, problem, 1.0)
+    // Radii from the present state, as in Fig. 5.
+    let shortest = |i: usize| neighbours(i).map(|(_, j)| (moved[i] - moved[j as usize]).length()).fold(f32::INFINITY, f32::min);
+    let radius: Vec<f32> = nodes().map(shortest).collect();
+    let contacts = contact_step(complex, problem, &Asked { size: Vec::new(), radius }, &moved);
+    nodes().map(|i| moved[i] + contacts.of(i).iter().map(|c| 0.5 * c.depth * c.direction).sum::<Vec3A>()).collect()
 }

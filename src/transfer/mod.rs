@@ -4,6 +4,8 @@
 //! The paper sets `B' = Σ (α, β, γ, δ) V''`; in exact arithmetic that is the same, in floating point the form with the
 //! displacement gives back the input's own digits where nothing moved.
 
+pub mod plugin;
+
 use glam::{DVec3, IVec3, Vec3A};
 use rayon::prelude::*;
 

@@ -14,6 +14,7 @@
 //! All lattice coordinates are in cells (edge length 1); [`Grid`] converts to and from source units.
 
 mod complex;
+pub mod plugin;
 mod rasterize;
 mod welds;
 
@@ -36,30 +37,17 @@ pub struct Grid {
     pub cells: UVec3,
 }
 
-/// Cells along the longest axis that this program accepts.
-///
-/// Below 4 nothing of a shape is left; above 256 the lattice of a solid block outgrows a laptop's memory.
-pub const RESOLUTIONS: std::ops::RangeInclusive<u32> = 4..=256;
-
 /// Room between the surface and the lattice's outer faces, in cells, so that rounding cannot put a vertex outside.
 ///
 /// Larger wastes resolution; smaller than about 1e-6 meets the rounding of f32 at 256 cells.
 const MARGIN: f64 = 1.0e-3;
 
 impl Grid {
-    /// The grid of `resolution` cells along the longest axis of `boundary`, centred on it.
+    /// The grid of `resolution` ≥ 1 cells along the longest axis of `boundary`, centred on it.
     ///
     /// # Errors
-    /// A resolution outside [`RESOLUTIONS`], or a boundary without extent.
+    /// A boundary without extent.
     pub fn around(boundary: &Boundary, resolution: u32) -> Result<Self> {
-        if !RESOLUTIONS.contains(&resolution) {
-            return Err(Error::input(format!(
-                "resolution {resolution} is outside {}..={}; a solid block of it would take about {}",
-                RESOLUTIONS.start(),
-                RESOLUTIONS.end(),
-                human_bytes(memory_of_block(resolution)),
-            )));
-        }
         let mut low = DVec3::INFINITY;
         let mut high = DVec3::NEG_INFINITY;
         for corner in boundary.triangles.iter().flatten() {
@@ -91,27 +79,6 @@ impl Grid {
     pub fn source_from_lattice(&self, p: DVec3) -> DVec3 {
         self.origin + p * self.cell_size
     }
-}
-
-/// Bytes a solid block of `resolution`³ cells would take in the solver: what to tell who asks for too much.
-pub fn memory_of_block(resolution: u32) -> f64 {
-    f64::from(resolution).powi(3) * BYTES_PER_CELL
-}
-
-/// Bytes of solver state per cell of a solid domain: neighbour and weight tables of two operators (2 × 112 and their
-/// coarser levels), cell corners, vectors of the iteration, film keyframes. Measured, rounded up.
-pub const BYTES_PER_CELL: f64 = 900.0;
-
-/// `1234567890.0` → `1.1 GiB`.
-pub fn human_bytes(bytes: f64) -> String {
-    const UNITS: [&str; 6] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB"];
-    let mut value = bytes;
-    let mut unit = 0;
-    while value >= 1024.0 && unit + 1 < UNITS.len() {
-        value /= 1024.0;
-        unit += 1;
-    }
-    format!("{value:.1} {}", UNITS[unit])
 }
 
 /// B to C: rasterize, flood-fill, subdivide.
