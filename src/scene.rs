@@ -79,7 +79,7 @@ impl fmt::Display for Source {
 
 /// A scene as written, not yet checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Scene", deny_unknown_fields)]
 pub struct Draft {
     /// Version of the format.
     pub version: u32,

@@ -331,10 +331,12 @@ fn what_cannot_be_written_ends_with_1() {
     assert!(text(&output.stderr).contains("/proc/out.obj: cannot write"), "{}", text(&output.stderr));
 }
 
-/// Runs a long warp, and interrupts it after its first word if asked to. Returns the exit code and what lies there.
+/// Runs a long warp over an old result, and interrupts it after its first word if asked to. Returns the exit code, what
+/// lies there, and whether the old result still does.
 #[cfg(unix)]
-fn long_warp(interrupt: bool, resolution: u32) -> (Option<i32>, Vec<String>) {
+fn long_warp(interrupt: bool, resolution: u32) -> (Option<i32>, Vec<String>, bool) {
     let folder = folder();
+    std::fs::write(folder.path().join("out.obj"), "old").unwrap();
     let resolution = resolution.to_string();
     let arguments =
         ["warp", "bars.obj", "--base", "1.3", "--resolution", &resolution, "-o", "out.obj", "--report", "r.json"];
@@ -350,20 +352,22 @@ fn long_warp(interrupt: bool, resolution: u32) -> (Option<i32>, Vec<String>) {
     let rest: Vec<_> = lines.map_while(Result::ok).collect();
     let code = child.wait().unwrap().code();
     assert_eq!(rest.iter().any(|line| line.contains("stopped at your request")), interrupt, "{rest:?}");
-    (code, listing(folder.path()))
+    let is_old = std::fs::read(folder.path().join("out.obj")).unwrap() == b"old";
+    (code, listing(folder.path()), is_old)
 }
 
 #[cfg(unix)]
 #[test]
 fn an_interrupted_warp_leaves_nothing() {
-    assert_eq!(long_warp(true, 96), (Some(1), vec!["bar.obj".into(), "bars.obj".into()]));
+    let files = ["bar.obj", "bars.obj", "out.obj"].map(String::from).to_vec();
+    assert_eq!(long_warp(true, 96), (Some(1), files, true));
 }
 
 #[cfg(unix)]
 #[test]
 fn sabotage_one_that_is_not_interrupted_leaves_its_files() {
-    let (code, files) = long_warp(false, 12);
-    assert_eq!((code, files), (Some(0), ["bar.obj", "bars.obj", "out.obj", "r.json"].map(String::from).to_vec()));
+    let files = ["bar.obj", "bars.obj", "out.obj", "r.json"].map(String::from).to_vec();
+    assert_eq!(long_warp(false, 12), (Some(0), files, false));
 }
 
 // ── other faces ──

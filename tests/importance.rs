@@ -163,6 +163,16 @@ fn extreme_importance_is_warned_of() {
 }
 
 #[test]
+fn a_sphere_that_touches_nothing_is_warned_of() {
+    let warnings = |x, radius| {
+        let stack = Stack::load(&[sphere(x, radius, 2.0)], 1.0, false, &square(), Path::new("")).unwrap();
+        stack.warnings().to_vec()
+    };
+    assert!(warnings(5.0, 3.9)[0].contains("[5, 0, 0]"), "{:?}", warnings(5.0, 3.9));
+    assert!(warnings(5.0, 4.1).is_empty());
+}
+
+#[test]
 fn attributes_are_importance_or_mapped_to_a_range() {
     let boundary = with_attribute([2.0, 4.0, 3.0, 2.5]);
     let layer = |range| Layer::Attribute { name: "heat".into(), range };

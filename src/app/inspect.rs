@@ -75,7 +75,9 @@ impl Inspection {
         let (input, domain) = (&self.input, &self.domain);
         let yes = |is: bool| if is { "yes" } else { "no" };
         let line = |label: &str, text: String| format!("{label:<22}{text}");
-        let [x, y, z] = [0, 1, 2].map(|i| self.extents.max[i] - self.extents.min[i]);
+        let (min, max) = (self.extents.min, self.extents.max);
+        let extents = [0, 1, 2].map(|i| short(max[i] - min[i])).join(" × ");
+        let [from, to] = [min, max].map(|corner| corner.map(short).join(", "));
         let mut lines = vec![
             self.source.clone(),
             line("  vertices", input.vertices.to_string()),
@@ -83,7 +85,7 @@ impl Inspection {
             line("  components", input.components.to_string()),
             line("  boundary loops", input.boundary_loops.to_string()),
             line("  self-intersections", input.self_intersections.to_string()),
-            line("  extents", format!("{x} × {y} × {z}, from {:?} to {:?}", self.extents.min, self.extents.max)),
+            line("  extents", format!("{extents}, from ({from}) to ({to})")),
             line("  texture coords", yes(self.uv).into()),
             line("  vertex colours", yes(self.colours).into()),
             line("  attributes", if self.attributes.is_empty() { "none".into() } else { String::new() }),
@@ -91,7 +93,7 @@ impl Inspection {
         lines.extend(self.attributes.iter().map(|attribute| format!("    {attribute}")));
         lines.push(format!("voxelized at {} cells along the longest axis", domain.resolution));
         lines.extend([
-            line("  cell size", domain.cell_size.to_string()),
+            line("  cell size", short(domain.cell_size)),
             line("  cells", domain.cells.to_string()),
             line("  nodes", domain.nodes.to_string()),
             line("  edges", domain.edges.to_string()),
@@ -102,6 +104,16 @@ impl Inspection {
         lines.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
         lines
     }
+}
+
+/// Six significant digits, without trailing zeros.
+fn short(number: f64) -> String {
+    let magnitude = if number == 0.0 { 0.0 } else { number.abs().log10().floor() };
+    if !(-5.0..=9.0).contains(&magnitude) {
+        return format!("{number:.5e}");
+    }
+    let text = format!("{number:.*}", (5.0 - magnitude).max(0.0) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 impl Extents {
@@ -134,5 +146,25 @@ impl std::fmt::Display for AttributeRange {
             write!(f, ", {} not finite", self.not_finite)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (number, expected) in [
+            (0.0, "0"),
+            (1.654_783_98, "1.65478"),
+            (-0.5, "-0.5"),
+            (120.0, "120"),
+            (1_234_567.8, "1234568"),
+            (1e-9, "1.00000e-9"),
+            (2e12, "2.00000e12"),
+        ] {
+            assert_eq!(short(number), expected);
+        }
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn watcher(quiet: bool) -> Watcher {
         Face::None
     } else if std::io::stderr().is_terminal() {
         let bar = ProgressBar::new(STEPS);
-        if let Ok(style) = ProgressStyle::with_template("{prefix:<12} [{bar:30}] {percent:>3} % {wide_msg}") {
+        if let Ok(style) = ProgressStyle::with_template("{prefix:<11} [{bar:20}] {percent:>3} % {wide_msg}") {
             bar.set_style(style);
         }
         Face::Bar(bar)
@@ -62,7 +62,7 @@ impl Observer for Watcher {
             Face::None => {}
             Face::Bar(bar) => {
                 bar.set_prefix(p.stage);
-                bar.set_message(details(p, self.start.elapsed()));
+                bar.set_message(details(p, self.start.elapsed()).join(" · "));
                 bar.set_position((p.fraction.clamp(0.0, 1.0) * STEPS as f32) as u64);
             }
             Face::Lines(last) => {
@@ -71,7 +71,9 @@ impl Observer for Watcher {
                 if last.0 != p.stage || last.1 != tenth {
                     *last = LastLine(p.stage, tenth);
                     let percent = p.fraction.clamp(0.0, 1.0) * 100.0;
-                    note(&format!("{}: {percent:.0} %{}", p.stage, details(p, self.start.elapsed())));
+                    let mut parts = details(p, self.start.elapsed());
+                    parts.insert(0, format!("{}: {percent:.0} %", p.stage));
+                    note(&parts.join(" · "));
                 }
             }
         }
@@ -82,22 +84,19 @@ impl Observer for Watcher {
     }
 }
 
-/// ` · λ 0.45 · size error 12.0 % · 14 s left`, each part only where it is known.
-fn details(p: &Progress, elapsed: Duration) -> String {
-    let mut details = String::new();
+/// `λ 0.45`, `size error 12.0 %`, `14 s left`, each only where it is known.
+fn details(p: &Progress, elapsed: Duration) -> Vec<String> {
+    let mut details = Vec::new();
     if p.lambda > 0.0 {
-        details += &format!(" · λ {:.2}", p.lambda);
+        details.push(format!("λ {:.2}", p.lambda));
     }
     if p.size_error_p95 > 0.0 && p.size_error_p95.is_finite() {
-        details += &format!(" · size error {:.1} %", p.size_error_p95 * 100.0);
+        details.push(format!("size error {:.1} %", p.size_error_p95 * 100.0));
     }
     // Before a twentieth is done a guess at the rest is worth nothing.
     if p.fraction > 0.05 && p.fraction <= 1.0 {
         let left = elapsed.as_secs_f32() * (1.0 - p.fraction) / p.fraction;
-        details += &match left {
-            s if s < 90.0 => format!(" · {s:.0} s left"),
-            s => format!(" · {:.0} min left", s / 60.0),
-        };
+        details.push(if left < 90.0 { format!("{left:.0} s left") } else { format!("{:.0} min left", left / 60.0) });
     }
     details
 }
@@ -110,9 +109,9 @@ mod tests {
     fn says_what_is_known() {
         let progress = |lambda, size_error_p95, fraction| Progress { stage: "x", lambda, size_error_p95, fraction };
         let elapsed = Duration::from_secs(10);
-        assert_eq!(details(&progress(0.0, f32::NAN, 0.0), elapsed), "");
-        assert_eq!(details(&progress(0.5, 0.12, 0.5), elapsed), " · λ 0.50 · size error 12.0 % · 10 s left");
-        assert_eq!(details(&progress(0.0, 0.0, 0.1), elapsed * 10), " · 15 min left");
-        assert_eq!(details(&progress(f32::NAN, 0.0, f32::NAN), elapsed), "");
+        assert_eq!(details(&progress(0.0, f32::NAN, 0.0), elapsed), [""; 0]);
+        assert_eq!(details(&progress(0.5, 0.12, 0.5), elapsed), ["λ 0.50", "size error 12.0 %", "10 s left"]);
+        assert_eq!(details(&progress(0.0, 0.0, 0.1), elapsed * 10), ["15 min left"]);
+        assert_eq!(details(&progress(f32::NAN, 0.0, f32::NAN), elapsed), [""; 0]);
     }
 }

@@ -30,7 +30,7 @@ pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     if let Some(regions) = stack.regions() {
         boundary.regions = Some(regions.clone());
     }
-    let warnings = warnings(&boundary, &stack);
+    let warnings = warnings(&scene, &boundary, &stack);
     if !options.quiet {
         warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
     }
@@ -75,10 +75,10 @@ fn layers(scene: &Scene, boundary: &Boundary) -> Vec<Layer> {
     scene.layers.clone()
 }
 
-fn warnings(boundary: &Boundary, stack: &Stack) -> Vec<String> {
+fn warnings(scene: &Scene, boundary: &Boundary, stack: &Stack) -> Vec<String> {
     let mut warnings = boundary.warnings.clone();
     warnings.extend_from_slice(stack.warnings());
-    if stack.is_uniform() {
+    if stack.is_uniform() && scene.base == 1.0 {
         warnings.push(
             "no importance was given, so the shape stays as it is; see --sphere in homunculus warp --help".into(),
         );

@@ -258,11 +258,10 @@ fn numbers<const N: usize>(rest: &str, least: usize) -> Result<[f64; N], String>
 /// Channels `red`, `green`, `blue` and, where it is ever below 1, `alpha`; 0..=255 becomes 0..=1.
 pub(crate) fn colour_attributes(colours: &[[f32; 4]]) -> Vec<Attribute> {
     let scale = if colours.iter().any(|c| c.iter().any(|&v| v > 1.0)) { 255.0 } else { 1.0 };
-    let with_alpha = colours.iter().any(|c| c[3] != 1.0);
-    let channel = |i: usize| Attribute {
-        name: COLOUR_CHANNELS[1][i].into(),
-        values: colours.iter().map(|c| if i == 3 && c[3] == 1.0 { 1.0 } else { c[i] / scale }).collect(),
-    };
+    let scaled = |c: &[f32; 4], i: usize| if i == 3 && c[3] == 1.0 { 1.0 } else { c[i] / scale };
+    let with_alpha = colours.iter().any(|c| scaled(c, 3) != 1.0);
+    let channel =
+        |i: usize| Attribute { name: COLOUR_CHANNELS[1][i].into(), values: colours.iter().map(|c| scaled(c, i)).collect() };
     (0..if with_alpha { 4 } else { 3 }).map(channel).collect()
 }
 

@@ -165,7 +165,13 @@ impl Stack {
                     return Err(Error::input(sentence));
                 }
                 let value = self.admit(*value, || format!("sphere at {centre}"))?;
-                Ok(Ready::Sphere(Sphere { centre, radius: *radius, ln_value: ln(value) }))
+                let sphere = Sphere { centre, radius: *radius, ln_value: ln(value) };
+                if !sphere.touches(&boundary.positions, &boundary.triangles) {
+                    let sentence =
+                        format!("sphere at {centre}: nothing of the surface lies within its radius {radius}");
+                    self.warnings.push(sentence);
+                }
+                Ok(Ready::Sphere(sphere))
             }
             Layer::Attribute { name, range } => self.attribute(name, *range, boundary),
             Layer::Values { path } => {

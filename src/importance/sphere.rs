@@ -1,6 +1,7 @@
 //! A dab of importance: a sphere with a smooth edge.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// A sphere, ready to be evaluated.
 #[derive(Debug, Clone)]
@@ -19,6 +20,44 @@ impl Sphere {
         let weight = falloff(point.distance(self.centre) / self.radius);
         below + weight * (self.ln_value - below)
     }
+}
+
+impl Sphere {
+    /// Whether any of these triangles comes within the radius.
+    pub fn touches(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> bool {
+        triangles.par_iter().any(|corners| {
+            let corners = corners.map(|vertex| positions[vertex as usize]);
+            closest_point(corners, self.centre).distance(self.centre) < self.radius
+        })
+    }
+}
+
+/// The point of a triangle closest to `p` (Ericson, *Real-Time Collision Detection*, 5.1.5): the region of the plane that
+/// `p` projects to, told from the signs of barycentric numerators, says whether a corner, an edge or the inside is closest.
+fn closest_point([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
+    let (ab, ac) = (b - a, c - a);
+    let from = |corner: DVec3| (ab.dot(p - corner), ac.dot(p - corner));
+    let ((d1, d2), (d3, d4), (d5, d6)) = (from(a), from(b), from(c));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    a + (ab * vb + ac * vc) / (va + vb + vc)
 }
 
 /// Weight at `t` radii from the centre: 1 − t³(10 − 15t + 6t²), and 0 from the radius on.
@@ -73,5 +112,26 @@ mod tests {
         assert_eq!(sphere.over(0.3, DVec3::new(3.0, 0.0, 0.0)), 0.3);
         let half = sphere.over(0.0, DVec3::new(2.0, 0.0, 0.0)).exp();
         assert!((half - 2.0).abs() < 1e-12, "half-way from 1 to 4 in the logarithm is 2, not {half}");
+    }
+
+    #[test]
+    fn touches_faces_edges_and_corners() {
+        let corners = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
+        let cases = [
+            ((1.0, 1.0, 0.5), 0.5),
+            ((3.0, 3.0, 0.0), 2f64.sqrt()),
+            ((2.0, -1.0, 0.0), 1.0),
+            ((-1.0, 2.0, 0.0), 1.0),
+            ((-3.0, -4.0, 0.0), 5.0),
+            ((7.0, -4.0, 0.0), 5.0),
+            ((-4.0, 7.0, 0.0), 5.0),
+        ];
+        for (centre, distance) in cases {
+            let sphere = |radius| Sphere { centre: centre.into(), radius, ln_value: 0.0 };
+            assert!(sphere(distance * 1.001).touches(&corners, &[[0, 1, 2]]), "{centre:?}");
+            assert!(!sphere(distance * 0.999).touches(&corners, &[[0, 1, 2]]), "{centre:?}");
+        }
+        let point = Sphere { centre: DVec3::ONE, radius: 2.0, ln_value: 0.0 };
+        assert!(point.touches(&corners, &[[0, 0, 0]]), "a triangle without area is a point");
     }
 }
