@@ -292,9 +292,11 @@ fn importance_colours_replace_those_of_the_input() {
 fn normals_of(path: &Path) -> Vec<(Vec3, Vec3)> {
     let file = gltf::Gltf::open(path).unwrap();
     let blob = file.blob.clone().unwrap();
-    let primitive = file.meshes().next().unwrap().primitives().next().unwrap();
-    let reader = primitive.reader(|_| Some(&blob));
-    reader.read_positions().unwrap().map(Vec3::from).zip(reader.read_normals().unwrap().map(Vec3::from)).collect()
+    let of = |primitive: gltf::Primitive| {
+        let reader = primitive.reader(|_| Some(&blob));
+        reader.read_positions().unwrap().map(Vec3::from).zip(reader.read_normals().unwrap().map(Vec3::from)).collect::<Vec<_>>()
+    };
+    file.meshes().flat_map(|mesh| mesh.primitives().flat_map(of).collect::<Vec<_>>()).collect()
 }
 
 #[test]
