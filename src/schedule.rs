@@ -16,6 +16,7 @@ use bevy::{
 };
 use glam::DVec3;
 
+pub use crate::certificate::{Certificate, Distortion, Fidelity, RegionFidelity};
 use crate::{
     Error, Result,
     boundary::Boundary,
@@ -43,7 +44,6 @@ use crate::{
         suspected_welds, voxelize,
     },
 };
-pub use crate::certificate::{Certificate, Distortion, Fidelity, RegionFidelity};
 
 /// The schedule that takes every domain one iteration further.
 #[derive(ScheduleLabel, Debug, Clone, PartialEq, Eq, Hash)]
@@ -94,27 +94,30 @@ pub struct SolveSchedulePlugin;
 
 impl Plugin for SolveSchedulePlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Stopwatch>().init_resource::<Failure>().init_schedule(Solve).edit_schedule(Solve, |schedule| {
-            schedule
-                // Stages are parallel inside (rayon), one after the other outside.
-                .set_executor(SingleThreadedExecutor::new())
-                .set_build_settings(ScheduleBuildSettings { ambiguity_detection: LogLevel::Error, ..default() })
-                .configure_sets(
-                    (
-                        Stage::Voxelize,
-                        Stage::Importance,
-                        Stage::EdgeSolve,
-                        Stage::Grow,
-                        Stage::Bind,
-                        Stage::Local,
-                        Stage::Contact,
-                        Stage::Global,
-                        Stage::Guard,
-                        Stage::Certify,
-                    )
-                        .chain(),
-                );
-        });
+        app.init_resource::<Stopwatch>().init_resource::<Failure>().init_schedule(Solve).edit_schedule(
+            Solve,
+            |schedule| {
+                schedule
+                    // Stages are parallel inside (rayon), one after the other outside.
+                    .set_executor(SingleThreadedExecutor::new())
+                    .set_build_settings(ScheduleBuildSettings { ambiguity_detection: LogLevel::Error, ..default() })
+                    .configure_sets(
+                        (
+                            Stage::Voxelize,
+                            Stage::Importance,
+                            Stage::EdgeSolve,
+                            Stage::Grow,
+                            Stage::Bind,
+                            Stage::Local,
+                            Stage::Contact,
+                            Stage::Global,
+                            Stage::Guard,
+                            Stage::Certify,
+                        )
+                            .chain(),
+                    );
+            },
+        );
     }
 }
 
@@ -298,12 +301,15 @@ fn progress(world: &World, entity: Entity) -> Progress {
         let fraction = *done as f32 / crate::reference::ITERATIONS as f32;
         return Progress { lambda: fraction, ..at("fig5", fraction) };
     }
-    let size_error_p95 = match (world.get::<Lattice>(entity), world.get::<CollisionProblem>(entity), world.get::<Warped>(entity)) {
-        (Some(Lattice(complex)), Some(CollisionProblem(problem)), Some(Warped(positions))) if growth.is_new_step() => {
-            fidelity(complex, &problem.importance, positions, problem.fidelity, &[], &[]).p95 as f32
-        }
-        _ => f32::NAN,
-    };
+    let size_error_p95 =
+        match (world.get::<Lattice>(entity), world.get::<CollisionProblem>(entity), world.get::<Warped>(entity)) {
+            (Some(Lattice(complex)), Some(CollisionProblem(problem)), Some(Warped(positions)))
+                if growth.is_new_step() =>
+            {
+                fidelity(complex, &problem.importance, positions, problem.fidelity, &[], &[]).p95 as f32
+            }
+            _ => f32::NAN,
+        };
     let (stage, lambda) = if growth.lambda() < 1.0 { ("growth", growth.lambda()) } else { ("settling", 1.0) };
     Progress { stage, lambda, size_error_p95, fraction: growth.fraction() }
 }
@@ -322,7 +328,11 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
         chosen
             .iter()
             .map(|&k| &film.keyframes()[k])
-            .map(|k| Frame { lambda: k.lambda, positions: binding.apply(&k.positions), certificate: k.certificate.clone() })
+            .map(|k| Frame {
+                lambda: k.lambda,
+                positions: binding.apply(&k.positions),
+                certificate: k.certificate.clone(),
+            })
             .collect()
     });
     for (lambda, certificate) in failed {

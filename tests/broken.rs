@@ -93,7 +93,11 @@ fn degenerate_triangles_among_good_ones_stay() {
 
 #[test]
 fn claims_are_checked_before_anything_is_reserved() {
-    let ply = |head: &str, body: &str| format!("ply\nformat {head}\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uint int vertex_indices\nend_header\n{body}");
+    let ply = |head: &str, body: &str| {
+        format!(
+            "ply\nformat {head}\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uint int vertex_indices\nend_header\n{body}"
+        )
+    };
     let mut stl = vec![0; 84];
     stl[80..84].copy_from_slice(&4_000_000_000u32.to_le_bytes());
     let gltf = |accessor: &str| {
@@ -103,10 +107,22 @@ fn claims_are_checked_before_anything_is_reserved() {
         ("a.off", b"OFF\n1000000000 1 0\n0 0 0\n".to_vec(), "claims 1000000000 vertices"),
         ("a.off", b"OFF\n18446744073709551615 18446744073709551615 0\n0 0 0\n".to_vec(), "claims"),
         ("a.ply", ply("ascii 1.0\nelement vertex 1000000000", "0 0 0\n").into_bytes(), "claims 1000000000 vertex rows"),
-        ("a.ply", ply("binary_little_endian 1.0\nelement vertex 18446744073709551615", "0 0 0\n").into_bytes(), "claims"),
-        ("a.ply", ply("ascii 1.0\nelement vertex 1", "0 0 0\n4000000000 0\n").into_bytes(), "face 0, property vertex_indices: the file ends"),
+        (
+            "a.ply",
+            ply("binary_little_endian 1.0\nelement vertex 18446744073709551615", "0 0 0\n").into_bytes(),
+            "claims",
+        ),
+        (
+            "a.ply",
+            ply("ascii 1.0\nelement vertex 1", "0 0 0\n4000000000 0\n").into_bytes(),
+            "face 0, property vertex_indices: the file ends",
+        ),
         ("a.stl", stl, "it claims 4000000000 triangles but holds 0"),
-        ("a.gltf", gltf("{\"componentType\":5126,\"count\":1000000000,\"type\":\"VEC3\"}"), "claims 1000000000 elements"),
+        (
+            "a.gltf",
+            gltf("{\"componentType\":5126,\"count\":1000000000,\"type\":\"VEC3\"}"),
+            "claims 1000000000 elements",
+        ),
         ("a.gltf", gltf("{\"componentType\":5126,\"count\":18446744073709551615,\"type\":\"VEC3\"}"), "claims"),
         ("a.gltf", gltf("{\"componentType\":5126,\"count\":-1,\"type\":\"VEC3\"}"), "malformed"),
     ] {
@@ -152,7 +168,10 @@ fn what_is_no_mesh_is_said_to_be_none() {
     assert!(complaint("a.obj", b"").contains("empty"));
     assert!(complaint("a.txt", b"hello\n").contains("which format"));
     assert!(complaint("a.ply", b"ply\nformat ascii 1.0\n").contains("end_header"));
-    assert!(complaint("a.stl", b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\n").contains("line 7"));
+    assert!(
+        complaint("a.stl", b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\n")
+            .contains("line 7")
+    );
     #[cfg(unix)]
     assert!(read(Path::new("/dev/zero")).unwrap_err().contains("no regular file"));
 }
@@ -185,7 +204,9 @@ fn wide_text_is_read() {
 fn a_face_with_very_many_corners_ends() {
     let count = 200_000;
     let angle = |i: usize| i as f64 / count as f64 * std::f64::consts::TAU;
-    let mut text: String = (0..count).map(|i| format!("v {} {} 0\n", angle(i).cos() * (1.0 + 0.5 * (i % 2) as f64), angle(i).sin())).collect();
+    let mut text: String = (0..count)
+        .map(|i| format!("v {} {} 0\n", angle(i).cos() * (1.0 + 0.5 * (i % 2) as f64), angle(i).sin()))
+        .collect();
     text.push('f');
     (1..=count).for_each(|i| text.push_str(&format!(" {i}")));
     let (_folder, path) = write("a.obj", text.as_bytes());
@@ -268,7 +289,15 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     glb.extend((binary.len() as u32).to_le_bytes());
     glb.extend(b"BIN\0");
     glb.extend(binary);
-    vec![("a.obj", obj.into()), ("a.off", off.into()), ("a.ply", ply), ("b.ply", ply_text.into()), ("a.stl", stl), ("b.stl", stl_text.into()), ("a.glb", glb)]
+    vec![
+        ("a.obj", obj.into()),
+        ("a.off", off.into()),
+        ("a.ply", ply),
+        ("b.ply", ply_text.into()),
+        ("a.stl", stl),
+        ("b.stl", stl_text.into()),
+        ("a.glb", glb),
+    ]
 }
 
 #[test]

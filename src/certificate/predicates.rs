@@ -93,7 +93,8 @@ fn disjoint_cross(s: &Triangle, t: &Triangle) -> bool {
         return false;
     }
     (0..3).any(|k| {
-        segment_meets_triangle(s.at[k], s.at[(k + 1) % 3], &t.at) || segment_meets_triangle(t.at[k], t.at[(k + 1) % 3], &s.at)
+        segment_meets_triangle(s.at[k], s.at[(k + 1) % 3], &t.at)
+            || segment_meets_triangle(t.at[k], t.at[(k + 1) % 3], &s.at)
     })
 }
 
@@ -137,7 +138,13 @@ fn degenerate(t: &Triangle) -> bool {
 /// The axis along which a triangle that has area also has area in projection.
 fn widest_projection(t: &[DVec3; 3]) -> usize {
     let n = (t[1] - t[0]).cross(t[2] - t[0]).abs();
-    let guess = if n.x >= n.y && n.x >= n.z { 0 } else if n.y >= n.z { 1 } else { 2 };
+    let guess = if n.x >= n.y && n.x >= n.z {
+        0
+    } else if n.y >= n.z {
+        1
+    } else {
+        2
+    };
     let has_area = |axis: usize| turn(flat(t[0], axis), flat(t[1], axis), flat(t[2], axis)) != 0;
     [guess, (guess + 1) % 3, (guess + 2) % 3].into_iter().find(|&axis| has_area(axis)).unwrap_or(guess)
 }
@@ -210,7 +217,9 @@ mod tests {
         let touching = triangle([[1., 1., 0.], [1., 2., 1.], [2., 1., 1.5]], [3, 4, 5]);
         let flat_inside = triangle([[0.5, 0.5, 0.], [1., 0.5, 0.], [0.5, 1., 0.]], [3, 4, 5]);
         let flat_beside = triangle([[5., 5., 0.], [6., 5., 0.], [5., 6., 0.]], [3, 4, 5]);
-        for (t, expected) in [(piercing, true), (above, false), (touching, true), (flat_inside, true), (flat_beside, false)] {
+        for (t, expected) in
+            [(piercing, true), (above, false), (touching, true), (flat_inside, true), (flat_beside, false)]
+        {
             assert_eq!(triangles_cross(&floor, &t), expected, "{t:?}");
             assert_eq!(triangles_cross(&t, &floor), expected, "{t:?}");
         }

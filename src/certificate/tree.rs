@@ -63,12 +63,7 @@ impl Tree {
         let leaves = centres.len().div_ceil(LEAF).next_power_of_two();
         let mut order: Vec<u32> = (0..centres.len() as u32).collect();
         split(&mut order, centres, leaves);
-        Self {
-            boxes: vec![Bounds::EMPTY; order.len()],
-            heap: vec![Bounds::EMPTY; 2 * leaves],
-            order,
-            leaves,
-        }
+        Self { boxes: vec![Bounds::EMPTY; order.len()], heap: vec![Bounds::EMPTY; 2 * leaves], order, leaves }
     }
 
     /// Primitives of leaf `l`, as a range of `order`.
@@ -163,7 +158,13 @@ fn split_range(part: &mut [u32], offset: usize, centres: &[Vec3A], n: usize, fir
     let cut = middle * n / leaves - offset;
     let bounds = Bounds::of(part.iter().map(|&p| centres[p as usize]));
     let extent = bounds.high - bounds.low;
-    let axis = if extent.x >= extent.y && extent.x >= extent.z { 0 } else if extent.y >= extent.z { 1 } else { 2 };
+    let axis = if extent.x >= extent.y && extent.x >= extent.z {
+        0
+    } else if extent.y >= extent.z {
+        1
+    } else {
+        2
+    };
     if cut > 0 && cut < part.len() {
         part.select_nth_unstable_by(cut, |&a, &b| {
             centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b))

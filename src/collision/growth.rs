@@ -68,7 +68,8 @@ impl Growth {
         if self.step + 1 < self.steps.len() {
             self.iteration >= ITERATIONS_PER_STEP
         } else {
-            self.iteration >= SETTLING_ITERATIONS || (self.iteration >= ITERATIONS_PER_STEP && self.motion < SETTLED_MOTION)
+            self.iteration >= SETTLING_ITERATIONS
+                || (self.iteration >= ITERATIONS_PER_STEP && self.motion < SETTLED_MOTION)
         }
     }
 
@@ -92,7 +93,8 @@ impl Growth {
     /// Share of the work done, 0..=1: settling counts as a quarter of the growth.
     pub fn fraction(&self) -> f32 {
         let last = self.steps.len().saturating_sub(1).max(1) as f32;
-        let within = self.iteration as f32 / if self.step as f32 >= last { SETTLING_ITERATIONS } else { ITERATIONS_PER_STEP } as f32;
+        let within = self.iteration as f32
+            / if self.step as f32 >= last { SETTLING_ITERATIONS } else { ITERATIONS_PER_STEP } as f32;
         if self.step as f32 >= last { 0.8 + 0.2 * within.min(1.0) } else { 0.8 * (self.step as f32 + within) / last }
     }
 }

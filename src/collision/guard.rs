@@ -119,7 +119,13 @@ pub struct Guarded {
 }
 
 /// Makes `proposed` valid by drawing nodes back towards `current`. `size` is `[cells]`, the size asked for now.
-pub fn guard(complex: &Complex, shells: &mut [Shell], size: &[f32], current: &[Vec3A], proposed: &mut [Vec3A]) -> Guarded {
+pub fn guard(
+    complex: &Complex,
+    shells: &mut [Shell],
+    size: &[f32],
+    current: &[Vec3A],
+    proposed: &mut [Vec3A],
+) -> Guarded {
     let mut near: Vec<Vec<(u32, u32)>> = shells.iter_mut().map(|s| s.near_pairs(current, proposed)).collect();
     let full: Vec<Vec3A> = proposed.to_vec();
     let mut halved = vec![0_u8; complex.nodes()];
@@ -136,9 +142,12 @@ pub fn guard(complex: &Complex, shells: &mut [Shell], size: &[f32], current: &[V
                 }
                 Some(moved) => {
                     let touched = |t: u32| {
-                        shell.surface.triangles[t as usize].iter().any(|&v| shell.nodes_of(v).iter().any(|&i| moved[i as usize]))
+                        shell.surface.triangles[t as usize]
+                            .iter()
+                            .any(|&v| shell.nodes_of(v).iter().any(|&i| moved[i as usize]))
                     };
-                    let again: Vec<(u32, u32)> = near.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect();
+                    let again: Vec<(u32, u32)> =
+                        near.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect();
                     shell.surface.crossing_pairs(&again, &positions)
                 }
             };
@@ -180,7 +189,13 @@ pub fn guard(complex: &Complex, shells: &mut [Shell], size: &[f32], current: &[V
 }
 
 /// Nodes of elements that the step would break, cell by cell.
-fn bad_cells(complex: &Complex, size: &[f32], current: &[Vec3A], proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
+fn bad_cells(
+    complex: &Complex,
+    size: &[f32],
+    current: &[Vec3A],
+    proposed: &[Vec3A],
+    moved: Option<&[bool]>,
+) -> Vec<u32> {
     complex
         .corners
         .par_chunks(CELLS_PER_TASK)

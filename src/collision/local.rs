@@ -81,9 +81,8 @@ const PROJECTION_STEPS: usize = 4;
 /// `P ← F + κ cof(P)`; falls back to a scaled rotation `shape` where `f` is too flat or inverted for that.
 #[inline]
 pub fn with_determinant(f: &Mat3A, volume: f32, shape: &Mat3A) -> Mat3A {
-    let cofactor = |m: &Mat3A| {
-        Mat3A::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
-    };
+    let cofactor =
+        |m: &Mat3A| Mat3A::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     let dot = |a: &Mat3A, b: &Mat3A| a.x_axis.dot(b.x_axis) + a.y_axis.dot(b.y_axis) + a.z_axis.dot(b.z_axis);
     let mut p = *f;
     let det = f.determinant();

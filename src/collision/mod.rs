@@ -14,8 +14,8 @@
 //! know, a few conjugate gradient steps are taken. All loops gather or sum in fixed chunks: same bits for any threads.
 
 pub mod contact;
-pub mod guard;
 pub mod growth;
+pub mod guard;
 pub mod local;
 pub mod plugin;
 

@@ -3,7 +3,9 @@
 use bevy::prelude::*;
 use glam::{Mat3A, Quat, Vec3A};
 
-use super::{Asked, Contacts, Growth, Guarded, Problem, Shell, contact_step, global_step, grow, guard_step, local_step};
+use super::{
+    Asked, Contacts, Growth, Guarded, Problem, Shell, contact_step, global_step, grow, guard_step, local_step,
+};
 use crate::{
     diagnostics::Stopwatch,
     edge::plugin::LinearSolution,
@@ -103,7 +105,9 @@ fn fit_cells(
     mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Sizes, &Warped, &mut Rotations, &mut Targets)>,
     mut watch: ResMut<Stopwatch>,
 ) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), sizes, warped, mut rotations, mut targets) in &mut domains {
+    for (Lattice(complex), CollisionProblem(problem), Growing(growth), sizes, warped, mut rotations, mut targets) in
+        &mut domains
+    {
         if !growth.done() {
             watch.time("local", || local_step(complex, problem, &sizes.0, &warped.0, &mut rotations.0, &mut targets.0));
         }
@@ -125,7 +129,9 @@ fn propose(
     mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Warped, &Targets, &Touching, &mut Proposed)>,
     mut watch: ResMut<Stopwatch>,
 ) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), warped, targets, touching, mut proposed) in &mut domains {
+    for (Lattice(complex), CollisionProblem(problem), Growing(growth), warped, targets, touching, mut proposed) in
+        &mut domains
+    {
         if !growth.done() {
             proposed.0 = watch.time("global", || global_step(complex, problem, &warped.0, &targets.0, &touching.0).0);
         }

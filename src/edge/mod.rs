@@ -15,8 +15,8 @@ pub mod plugin;
 mod solve;
 
 pub use multigrid::{Multigrid, Weights};
-pub use solve::{Solution, conjugate_gradients, dot};
 pub(crate) use solve::preconditioned;
+pub use solve::{Solution, conjugate_gradients, dot};
 
 use glam::Vec3A;
 use rayon::prelude::*;

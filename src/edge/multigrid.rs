@@ -189,7 +189,11 @@ impl Multigrid {
         std::mem::swap(&mut work.x, &mut work.spare);
 
         let x = &work.x;
-        (0..b.len()).into_par_iter().with_min_len(CHUNK).map(|i| b[i] - level.row(x, i)).collect_into_vec(&mut work.spare);
+        (0..b.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|i| b[i] - level.row(x, i))
+            .collect_into_vec(&mut work.spare);
         let residual = &work.spare;
         (0..level.children_start.len() - 1)
             .into_par_iter()

@@ -50,8 +50,11 @@ impl Smoothing {
         let mut known: HashMap<(u32, Option<[u32; 3]>), u32> = HashMap::new();
         let mut class = |triangle: usize, corner: usize| {
             let vertex = boundary.triangles[triangle][corner];
-            let normal = match source.triangle_corners.get(triangle).map(|c| source.corner_normals[c[corner] as usize]) {
-                Some(index) if index != NONE => Some((source.normals[index as usize] + Vec3::ZERO).to_array().map(f32::to_bits)),
+            let normal = match source.triangle_corners.get(triangle).map(|c| source.corner_normals[c[corner] as usize])
+            {
+                Some(index) if index != NONE => {
+                    Some((source.normals[index as usize] + Vec3::ZERO).to_array().map(f32::to_bits))
+                }
                 _ => None,
             };
             let next = known.len() as u32;
@@ -76,7 +79,8 @@ impl Smoothing {
         for corners in &around {
             let mut group: Vec<usize> = (0..corners.len()).collect();
             for i in 0..corners.len() {
-                let is_smooth = |j: usize| facets[corners[i].0 as usize].dot(facets[corners[j].0 as usize]) >= least_cosine;
+                let is_smooth =
+                    |j: usize| facets[corners[i].0 as usize].dot(facets[corners[j].0 as usize]) >= least_cosine;
                 let joined = (0..i).filter(|&j| corners.len() > MAX_FACETS || is_smooth(j));
                 for j in joined.collect::<Vec<_>>() {
                     let (from, to) = (group[i].max(group[j]), group[i].min(group[j]));

@@ -63,7 +63,12 @@ impl Film {
     /// Chooses about `keys` keyframes after the rest state, evenly in λ, and more wherever a blend of two chosen ones
     /// fails the check. Returns their indices, first and last included, and the certificates of all blends checked
     /// between them that failed although nothing solved lies between.
-    pub fn select(&self, keys: usize, complex: &Complex, shells: &mut [Shell]) -> (Vec<usize>, Vec<(f32, Certificate)>) {
+    pub fn select(
+        &self,
+        keys: usize,
+        complex: &Complex,
+        shells: &mut [Shell],
+    ) -> (Vec<usize>, Vec<(f32, Certificate)>) {
         let Some(last) = self.keyframes.len().checked_sub(1) else { return (Vec::new(), Vec::new()) };
         let mut chosen: Vec<usize> = (0..=keys)
             .map(|k| {

@@ -44,7 +44,8 @@ impl Sampling {
             .into_par_iter()
             .with_min_len(256)
             .map(|t| {
-                let at = boundary.triangles[t].map(|v| complex.grid.lattice_from_source(boundary.positions[v as usize]));
+                let at =
+                    boundary.triangles[t].map(|v| complex.grid.lattice_from_source(boundary.positions[v as usize]));
                 let longest = (at[1] - at[0]).length().max((at[2] - at[1]).length()).max((at[0] - at[2]).length());
                 let cuts = ((longest * SAMPLES_PER_CELL).ceil() as u32).clamp(1, MOST_CUTS);
                 let mut samples = Vec::new();
@@ -85,7 +86,8 @@ impl Sampling {
         }
         // The mean of a node's samples, pulling with at most PULL: many samples do not outweigh few.
         let mass: Vec<f32> = pull.iter().map(|&p| PULL * p.min(1.0) as f32).collect();
-        let wanted: Vec<f32> = pull.iter().zip(&towards).map(|(&p, &t)| if p > 0.0 { (t / p) as f32 } else { 0.0 }).collect();
+        let wanted: Vec<f32> =
+            pull.iter().zip(&towards).map(|(&p, &t)| if p > 0.0 { (t / p) as f32 } else { 0.0 }).collect();
         if wanted.iter().zip(&mass).all(|(&u, &m)| m == 0.0 || u == 0.0) {
             return vec![1.0; complex.nodes()];
         }

@@ -64,7 +64,8 @@ pub fn fig5(
     x: &[Vec3A],
 ) -> Vec<Vec3A> {
     let nodes = || (0..complex.nodes()).into_par_iter().with_min_len(CHUNK);
-    let neighbours = |i: usize| complex.neighbours[i].iter().copied().enumerate().filter(move |&(_, j)| j as usize != i);
+    let neighbours =
+        |i: usize| complex.neighbours[i].iter().copied().enumerate().filter(move |&(_, j)| j as usize != i);
     let moved: Vec<Vec3A> = nodes()
         .map(|i| {
             let (mut sum, mut count) = (Vec3A::ZERO, 0.0);
@@ -86,7 +87,8 @@ pub fn fig5(
         return moved;
     }
     // Radii from the present state, as in Fig. 5.
-    let shortest = |i: usize| neighbours(i).map(|(_, j)| (moved[i] - moved[j as usize]).length()).fold(f32::INFINITY, f32::min);
+    let shortest =
+        |i: usize| neighbours(i).map(|(_, j)| (moved[i] - moved[j as usize]).length()).fold(f32::INFINITY, f32::min);
     let radius: Vec<f32> = nodes().map(shortest).collect();
     let contacts = contact_step(complex, problem, &Asked { size: Vec::new(), radius }, &moved);
     nodes().map(|i| moved[i] + contacts.of(i).iter().map(|c| 0.5 * c.depth * c.direction).sum::<Vec3A>()).collect()

@@ -80,7 +80,9 @@ type Projected<'a> = (
 );
 
 fn project(mut domains: Query<Projected>, mut watch: ResMut<Stopwatch>) {
-    for (domain, Lattice(complex), linear, problem, mut growing, mut warped, mut shells, mut reel, mut done) in &mut domains {
+    for (domain, Lattice(complex), linear, problem, mut growing, mut warped, mut shells, mut reel, mut done) in
+        &mut domains
+    {
         let keys = domain.settings.keys.max(1);
         if done.0 == 0 {
             keep(complex, &mut shells.0, &mut reel.0, 0.0, &complex.rest, &mut watch);
@@ -100,7 +102,13 @@ fn project(mut domains: Query<Projected>, mut watch: ResMut<Stopwatch>) {
     }
 }
 
-fn iterate(complex: &crate::voxel::Complex, problem: &Problem, linear: &[Vec3A], lambda: f32, x: &[Vec3A]) -> Vec<Vec3A> {
+fn iterate(
+    complex: &crate::voxel::Complex,
+    problem: &Problem,
+    linear: &[Vec3A],
+    lambda: f32,
+    x: &[Vec3A],
+) -> Vec<Vec3A> {
     fig5(complex, problem, linear, Reading::Sensible, lambda, x)
 }
 

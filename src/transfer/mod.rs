@@ -123,7 +123,9 @@ impl Binding {
 
     /// Invariant: weights are barycentric. Returns the first vertex for which they are not.
     pub fn is_inside(&self) -> Result<(), usize> {
-        let fine = |w: &[f32; 4]| w.iter().all(|&x| x >= 0.0) && ((w.iter().sum::<f32>() - 1.0).abs() < 1e-5 || w.iter().all(|&x| x == 0.0));
+        let fine = |w: &[f32; 4]| {
+            w.iter().all(|&x| x >= 0.0) && ((w.iter().sum::<f32>() - 1.0).abs() < 1e-5 || w.iter().all(|&x| x == 0.0))
+        };
         self.weights.iter().position(|w| !fine(w)).map_or(Ok(()), Err)
     }
 

@@ -84,7 +84,10 @@ impl Complex {
         }
 
         let stride = n + 1;
-        let key = |p: IVec3| (p[order[0]] as usize * stride[order[1]] as usize + p[order[1]] as usize) * stride[order[2]] as usize + p[order[2]] as usize;
+        let key = |p: IVec3| {
+            (p[order[0]] as usize * stride[order[1]] as usize + p[order[1]] as usize) * stride[order[2]] as usize
+                + p[order[2]] as usize
+        };
         let mut node_at = vec![u32::MAX; (stride.x * stride.y) as usize * stride.z as usize];
         for &cell in &cells {
             for corner in 0..8 {
@@ -230,8 +233,7 @@ impl Complex {
                 }
             }
         }
-        let mut directed: Vec<(u32, u32)> =
-            self.faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
+        let mut directed: Vec<(u32, u32)> = self.faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
         directed.sort_unstable();
         let mut reversed: Vec<(u32, u32)> = directed.iter().map(|&(a, b)| (b, a)).collect();
         reversed.sort_unstable();

@@ -20,7 +20,8 @@ const OUTSIDE: u8 = 2;
 pub fn rasterize(boundary: &Boundary, grid: &Grid) -> Vec<bool> {
     // One cell of padding on each side: the flood fill starts there and reaches all around the shape.
     let padded = grid.cells + UVec3::splat(2);
-    let index = |c: IVec3| ((c.z as usize + 1) * padded.y as usize + c.y as usize + 1) * padded.x as usize + c.x as usize + 1;
+    let index =
+        |c: IVec3| ((c.z as usize + 1) * padded.y as usize + c.y as usize + 1) * padded.x as usize + c.x as usize + 1;
     let mut state = vec![EMPTY; padded.x as usize * padded.y as usize * padded.z as usize];
 
     let touched: Vec<Vec<IVec3>> = boundary
@@ -73,7 +74,13 @@ fn halve(corners: &[DVec3; 3], first: IVec3, end: IVec3, mark: &mut impl FnMut(I
         mark(first);
         return;
     }
-    let axis = if size.x >= size.y && size.x >= size.z { 0 } else if size.y >= size.z { 1 } else { 2 };
+    let axis = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
     let middle = first[axis] + size[axis] / 2;
     let mut end_low = end;
     end_low[axis] = middle;

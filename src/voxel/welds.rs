@@ -18,37 +18,43 @@ pub fn suspected_welds(boundary: &Boundary, welded: &[u32], complex: &Complex) -
         touched_cells(at, complex.grid.cells, &mut |c: IVec3| touching.push((c.to_array(), t)));
     }
     touching.sort_unstable();
-    touching.chunk_by(|a, b| a.0 == b.0).filter(|cell| {
-        let centre = IVec3::from_array(cell[0].0).as_dvec3() + 0.5;
-        let mut sets = Sets::new(cell.len());
-        let mut owners: Vec<(u32, u32)> =
-            cell.iter().enumerate().flat_map(|(k, &(_, t))| corners(t).map(|v| (welded[v as usize], k as u32))).collect();
-        owners.sort_unstable();
-        for pair in owners.windows(2) {
-            if pair[0].0 == pair[1].0 {
-                sets.join(pair[0].1, pair[1].1);
-            }
-        }
-        // The nearest point of each piece, with the normal there.
-        let mut pieces: Vec<(u32, DVec3, DVec3)> = Vec::new();
-        for (k, &(_, t)) in cell.iter().enumerate() {
-            let at = corners(t).map(|v| complex.grid.lattice_from_source(boundary.positions[v as usize]));
-            let normal = (at[1] - at[0]).cross(at[2] - at[0]);
-            let nearest = nearest_point(centre, at);
-            let root = sets.find(k as u32);
-            match pieces.iter_mut().find(|p| p.0 == root) {
-                Some(piece) if (nearest - centre).length_squared() < (piece.1 - centre).length_squared() => {
-                    *piece = (root, nearest, normal);
+    touching
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter(|cell| {
+            let centre = IVec3::from_array(cell[0].0).as_dvec3() + 0.5;
+            let mut sets = Sets::new(cell.len());
+            let mut owners: Vec<(u32, u32)> = cell
+                .iter()
+                .enumerate()
+                .flat_map(|(k, &(_, t))| corners(t).map(|v| (welded[v as usize], k as u32)))
+                .collect();
+            owners.sort_unstable();
+            for pair in owners.windows(2) {
+                if pair[0].0 == pair[1].0 {
+                    sets.join(pair[0].1, pair[1].1);
                 }
-                Some(_) => {}
-                None => pieces.push((root, nearest, normal)),
             }
-        }
-        pieces.iter().enumerate().any(|(k, a)| {
-            pieces[..k].iter().any(|b| a.2.dot(b.1 - a.1) > 0.0 && b.2.dot(a.1 - b.1) > 0.0)
+            // The nearest point of each piece, with the normal there.
+            let mut pieces: Vec<(u32, DVec3, DVec3)> = Vec::new();
+            for (k, &(_, t)) in cell.iter().enumerate() {
+                let at = corners(t).map(|v| complex.grid.lattice_from_source(boundary.positions[v as usize]));
+                let normal = (at[1] - at[0]).cross(at[2] - at[0]);
+                let nearest = nearest_point(centre, at);
+                let root = sets.find(k as u32);
+                match pieces.iter_mut().find(|p| p.0 == root) {
+                    Some(piece) if (nearest - centre).length_squared() < (piece.1 - centre).length_squared() => {
+                        *piece = (root, nearest, normal);
+                    }
+                    Some(_) => {}
+                    None => pieces.push((root, nearest, normal)),
+                }
+            }
+            pieces
+                .iter()
+                .enumerate()
+                .any(|(k, a)| pieces[..k].iter().any(|b| a.2.dot(b.1 - a.1) > 0.0 && b.2.dot(a.1 - b.1) > 0.0))
         })
-    })
-    .count()
+        .count()
 }
 
 /// The point of a triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
