@@ -1,5 +1,10 @@
 //! Contract of `boundary`: every format gives the vertices and triangles of the file, in its order, in world positions, with
 //! the attributes, texture coordinates and regions it names.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot be set up has failed; one that is skipped says so"
+)]
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +32,8 @@ fn volume(boundary: &Boundary) -> f64 {
     boundary.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum::<f64>() / 6.0
 }
 
-const CORNERS: [[f32; 3]; 8] = [[0., 0., 0.], [2., 0., 0.], [2., 2., 0.], [0., 2., 0.], [0., 0., 2.], [2., 0., 2.], [2., 2., 2.], [0., 2., 2.]];
+const CORNERS: [[f32; 3]; 8] =
+    [[0., 0., 0.], [2., 0., 0.], [2., 2., 0.], [0., 2., 0.], [0., 0., 2.], [2., 0., 2.], [2., 2., 2.], [0., 2., 2.]];
 const QUADS: [[u32; 4]; 6] = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
 fn lines(items: impl IntoIterator<Item = String>) -> String {
@@ -40,12 +46,25 @@ fn words<T: ToString>(items: &[T]) -> String {
 
 /// The cube of edge 2 in every format and encoding.
 fn cubes() -> Vec<(&'static str, Vec<u8>)> {
-    let obj = lines(CORNERS.iter().map(|c| format!("v {}", words(c))).chain(QUADS.iter().map(|q| format!("f {}", words(&q.map(|i| i + 1))))));
-    let off = format!("OFF\n8 6 0\n{}{}", lines(CORNERS.iter().map(|c| words(c))), lines(QUADS.iter().map(|q| format!("4 {}", words(q)))));
+    let obj = lines(
+        CORNERS
+            .iter()
+            .map(|c| format!("v {}", words(c)))
+            .chain(QUADS.iter().map(|q| format!("f {}", words(&q.map(|i| i + 1))))),
+    );
+    let off = format!(
+        "OFF\n8 6 0\n{}{}",
+        lines(CORNERS.iter().map(|c| words(c))),
+        lines(QUADS.iter().map(|q| format!("4 {}", words(q))))
+    );
     let head = |encoding: &str| {
-        format!("ply\nformat {encoding} 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n")
+        format!(
+            "ply\nformat {encoding} 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n"
+        )
     };
-    let ply_text = head("ascii") + &lines(CORNERS.iter().map(|c| words(c))) + &lines(QUADS.iter().map(|q| format!("4 {}", words(q))));
+    let ply_text = head("ascii")
+        + &lines(CORNERS.iter().map(|c| words(c)))
+        + &lines(QUADS.iter().map(|q| format!("4 {}", words(q))));
     let binary = |encoding: &str, float: fn(f32) -> [u8; 4], int: fn(u32) -> [u8; 4]| {
         let mut out = head(encoding).into_bytes();
         out.extend(CORNERS.iter().flatten().flat_map(|&x| float(x)));
@@ -56,7 +75,12 @@ fn cubes() -> Vec<(&'static str, Vec<u8>)> {
         out
     };
     let triangles: Vec<[u32; 3]> = QUADS.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
-    let facet = |t: &[u32; 3]| format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet", lines(t.iter().map(|&v| format!("vertex {}", words(&CORNERS[v as usize])))));
+    let facet = |t: &[u32; 3]| {
+        format!(
+            "facet normal 0 0 0\nouter loop\n{}endloop\nendfacet",
+            lines(t.iter().map(|&v| format!("vertex {}", words(&CORNERS[v as usize]))))
+        )
+    };
     let stl_text = format!("solid cube\n{}endsolid cube\n", lines(triangles.iter().map(facet)));
     // A binary STL may start with the word of the text format all the same.
     let mut stl = b"solid in name only".to_vec();
@@ -68,12 +92,21 @@ fn cubes() -> Vec<(&'static str, Vec<u8>)> {
         stl.extend([0; 2]);
     }
     let flat: Vec<f32> = CORNERS.iter().flatten().copied().collect();
-    let glb = glb(json!({ "nodes": [{ "mesh": 0 }], "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }] }),
-        &[(&flat, "VEC3")], &triangles.iter().flatten().copied().collect::<Vec<_>>());
-    vec![("a.obj", obj.into_bytes()), ("a.off", off.into_bytes()), ("a.ply", ply_text.into_bytes()),
+    let glb = glb(
+        json!({ "nodes": [{ "mesh": 0 }], "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }] }),
+        &[(&flat, "VEC3")],
+        &triangles.iter().flatten().copied().collect::<Vec<_>>(),
+    );
+    vec![
+        ("a.obj", obj.into_bytes()),
+        ("a.off", off.into_bytes()),
+        ("a.ply", ply_text.into_bytes()),
         ("le.ply", binary("binary_little_endian", f32::to_le_bytes, u32::to_le_bytes)),
         ("be.ply", binary("binary_big_endian", f32::to_be_bytes, u32::to_be_bytes)),
-        ("a.stl", stl_text.into_bytes()), ("b.stl", stl), ("a.glb", glb)]
+        ("a.stl", stl_text.into_bytes()),
+        ("b.stl", stl),
+        ("a.glb", glb),
+    ]
 }
 
 /// A GLB of float accessors 0, 1, … and, last, one of indices if there are any. The JSON is completed.
@@ -82,11 +115,18 @@ fn glb(mut root: Value, floats: &[(&[f32], &str)], indices: &[u32]) -> Vec<u8> {
     let (mut views, mut accessors) = (Vec::new(), Vec::new());
     let mut add = |bytes: Vec<u8>, component: u32, count: usize, kind: &str| {
         views.push(json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": bytes.len() }));
-        accessors.push(json!({ "bufferView": views.len() - 1, "componentType": component, "count": count, "type": kind }));
+        accessors
+            .push(json!({ "bufferView": views.len() - 1, "componentType": component, "count": count, "type": kind }));
         binary.extend(bytes);
     };
     for (values, kind) in floats {
-        let width = match *kind { "SCALAR" => 1, "VEC2" => 2, "VEC3" => 3, "VEC4" => 4, _ => 16 };
+        let width = match *kind {
+            "SCALAR" => 1,
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 16,
+        };
         add(values.iter().flat_map(|v| v.to_le_bytes()).collect(), 5126, values.len() / width, kind);
     }
     if !indices.is_empty() {
@@ -96,7 +136,10 @@ fn glb(mut root: Value, floats: &[(&[f32], &str)], indices: &[u32]) -> Vec<u8> {
     root["bufferViews"] = json!(views);
     if let Some(patches) = root.as_object_mut().unwrap().remove("accessorPatches") {
         for (index, patch) in patches.as_object().unwrap() {
-            accessors[index.parse::<usize>().unwrap()].as_object_mut().unwrap().extend(patch.as_object().unwrap().clone());
+            accessors[index.parse::<usize>().unwrap()]
+                .as_object_mut()
+                .unwrap()
+                .extend(patch.as_object().unwrap().clone());
         }
     }
     root["accessors"] = json!(accessors);
@@ -180,6 +223,14 @@ l 1 2\nf 1 2
 }
 
 #[test]
+fn materials_name_the_regions_where_objects_do_not() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl skin\nf 1 2 3\nusemtl nail\nf 1 2 4\n";
+    let regions = read_bytes("a.obj", text.as_bytes()).regions.unwrap();
+    assert_eq!((regions.names, regions.of_vertex), (vec!["skin".to_owned(), "nail".to_owned()], vec![0, 0, 0, 1]));
+    assert!(read_bytes("a.obj", text.replace("nail", "skin").as_bytes()).regions.is_none());
+}
+
+#[test]
 fn ply_keeps_every_property() {
     let text = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
         property float quality\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty float s\nproperty float t\n\
@@ -194,7 +245,8 @@ fn ply_keeps_every_property() {
 
 #[test]
 fn off_variants_are_read() {
-    let coff = "COFF # colours\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255 # green\n\n0 1 0 0 0 255 255\n3 0 1 2 10 20 30\n";
+    let coff =
+        "COFF # colours\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255 # green\n\n0 1 0 0 0 255 255\n3 0 1 2 10 20 30\n";
     let mesh = read_bytes("a.off", coff.as_bytes());
     assert_eq!(attribute(&mesh, "green"), [0.0, 1.0, 0.0]);
     let noff = "NOFF 3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
@@ -210,7 +262,8 @@ fn gltf_nodes_are_baked_and_mirrors_turned() {
         "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "_PRESSURE": 1, "COLOR_0": 2 }, "material": 7 }] }],
     });
     let colours = [0.5f32; 9];
-    let mesh = read_bytes("a.glb", &glb(root, &[(TRIANGLE, "VEC3"), (&[1., 2., 3.], "SCALAR"), (&colours, "VEC3")], &[]));
+    let mesh =
+        read_bytes("a.glb", &glb(root, &[(TRIANGLE, "VEC3"), (&[1., 2., 3.], "SCALAR"), (&colours, "VEC3")], &[]));
     assert_eq!(mesh.positions[1], DVec3::new(2.0, 0.0, 5.0));
     assert_eq!(mesh.positions[4], DVec3::new(-1.0, 0.0, 5.0));
     let up = |t: &[u32; 3]| {
@@ -251,7 +304,10 @@ fn gltf_skins_stand_at_rest_and_their_joints_are_regions() {
     });
     let joints = [0., 1., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0.];
     let weights = [1., 0., 0., 0., 1., 0., 0., 0., 0.25, 0.75, 0., 0.];
-    let mesh = read_bytes("a.glb", &glb(root, &[(TRIANGLE, "VEC3"), (&joints, "VEC4"), (&weights, "VEC4"), (&matrices, "MAT4")], &[]));
+    let mesh = read_bytes(
+        "a.glb",
+        &glb(root, &[(TRIANGLE, "VEC3"), (&joints, "VEC4"), (&weights, "VEC4"), (&matrices, "MAT4")], &[]),
+    );
     assert_eq!(mesh.positions, [DVec3::new(0., 0., 1.), DVec3::new(1., 1., 2.), DVec3::new(0., 1.75, 1.75)]);
     let regions = mesh.regions.unwrap();
     assert_eq!((regions.names, regions.of_vertex), (vec!["root".to_owned(), "tip".to_owned()], vec![0, 1, 1]));
@@ -278,9 +334,17 @@ fn shared(name: &str) -> Option<PathBuf> {
 #[test]
 fn real_meshes_have_the_counts_their_makers_say() {
     let expected = [
-        ("CesiumMan.glb", 3273, 4672), ("Duck.glb", 2399, 4212), ("armadillo.obj", 14587, 29170), ("hand.off", 1197, 2390),
-        ("airplane.ply", 1335, 2452), ("spider.stl", 4104, 1368), ("wheel_scaled.stl", 12168, 4056), ("JapaneseLantern.obj", 400, 888),
-        ("makehuman_lowpoly_3pc.obj", 369, 734), ("hra_female_skin.glb", 62176, 124_348), ("streetlight.gltf", 190, 176),
+        ("CesiumMan.glb", 3273, 4672),
+        ("Duck.glb", 2399, 4212),
+        ("armadillo.obj", 14587, 29170),
+        ("hand.off", 1197, 2390),
+        ("airplane.ply", 1335, 2452),
+        ("spider.stl", 4104, 1368),
+        ("wheel_scaled.stl", 12168, 4056),
+        ("JapaneseLantern.obj", 400, 888),
+        ("makehuman_lowpoly_3pc.obj", 369, 734),
+        ("hra_female_skin.glb", 62176, 124_348),
+        ("streetlight.gltf", 190, 176),
     ];
     for (name, vertices, triangles) in expected {
         let Some(path) = shared(name) else { continue };

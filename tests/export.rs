@@ -1,14 +1,19 @@
 //! Contract of `export`: what was read is written again with other positions and nothing else changed, in every format that can
 //! hold it; the growth plays as the frames say; a failed write leaves nothing behind.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot be set up has failed; one that is skipped says so"
+)]
 
 use std::collections::HashSet;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec2, Vec3};
+use homunculus::Error;
 use homunculus::boundary::{self, Boundary};
 use homunculus::export::{self, GrowthFrame};
-use homunculus::Error;
 
 const FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
 
@@ -33,7 +38,9 @@ f 4/1/6 1/2/6 5/3/6 8/4/6
 
 fn png() -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image::RgbImage::from_pixel(2, 2, image::Rgb([200, 100, 50])).write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    image::RgbImage::from_pixel(2, 2, image::Rgb([200, 100, 50]))
+        .write_to(&mut bytes, image::ImageFormat::Png)
+        .unwrap();
     bytes.into_inner()
 }
 
@@ -42,7 +49,8 @@ fn textured_box() -> (tempfile::TempDir, Boundary) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("textures")).unwrap();
     std::fs::write(folder.path().join("textures/wood grain.png"), png()).unwrap();
-    let library = "newmtl wood\nKd 1 1 1\nmap_Kd -s 1 1 1 textures/wood grain.png\nnewmtl steel\nKd 0.2 0.4 0.6\nd 0.5\n";
+    let library =
+        "newmtl wood\nKd 1 1 1\nmap_Kd -s 1 1 1 textures/wood grain.png\nnewmtl steel\nKd 0.2 0.4 0.6\nd 0.5\n";
     std::fs::write(folder.path().join("box.mtl"), library).unwrap();
     std::fs::write(folder.path().join("box.obj"), BOX).unwrap();
     let boundary = boundary::read(&folder.path().join("box.obj")).unwrap();
@@ -99,7 +107,8 @@ fn is_same(before: &Boundary, positions: &[DVec3], after: &Boundary, format: &st
     if format == "off" {
         return Ok(());
     }
-    let near = |a: &Option<Vec2>, b: &Option<Vec2>| (a.unwrap_or_default() - b.unwrap_or_default()).abs().max_element() < 1e-5;
+    let near =
+        |a: &Option<Vec2>, b: &Option<Vec2>| (a.unwrap_or_default() - b.unwrap_or_default()).abs().max_element() < 1e-5;
     match (before.vertex_uvs(), after.vertex_uvs()) {
         (None, None) => {}
         (Some(was), Some(is)) if was.iter().zip(&is).all(|(a, b)| near(a, b)) => {}
@@ -119,7 +128,8 @@ fn real_meshes() -> Vec<PathBuf> {
         println!("skipped: {} is not there", folder.display());
         return Vec::new();
     };
-    let mut paths: Vec<_> = entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e != "bin")).collect();
+    let mut paths: Vec<_> =
+        entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e != "bin")).collect();
     paths.sort();
     paths
 }
@@ -137,11 +147,13 @@ fn every_format_goes_through_every_format() {
                 let path = out.path().join(format!("{}.{format}", mesh.name));
                 export::mesh(mesh, &positions, None, &path).unwrap();
                 let again = boundary::read(&path).unwrap();
-                is_same(mesh, &positions, &again, format).unwrap_or_else(|what| panic!("{} as {format}: {what}", mesh.name));
+                is_same(mesh, &positions, &again, format)
+                    .unwrap_or_else(|what| panic!("{} as {format}: {what}", mesh.name));
                 // And back into the format it came from, by way of this one.
                 let back = out.path().join(format!("{}-back.ply", mesh.name));
                 export::mesh(&again, &again.positions, None, &back).unwrap();
-                is_same(&again, &again.positions, &boundary::read(&back).unwrap(), "ply").unwrap_or_else(|what| panic!("{} {format} → ply: {what}", mesh.name));
+                is_same(&again, &again.positions, &boundary::read(&back).unwrap(), "ply")
+                    .unwrap_or_else(|what| panic!("{} {format} → ply: {what}", mesh.name));
             }
         }
     }
@@ -173,20 +185,32 @@ fn an_identity_warp_gives_equal_numbers() {
     let mut paths = real_meshes();
     paths.push(folder.path().join("box.obj"));
     for path in paths {
-        let Some(extension) = path.extension().and_then(|e| e.to_str()).filter(|e| ["obj", "off", "ply", "stl"].contains(e)) else { continue };
+        let Some(extension) =
+            path.extension().and_then(|e| e.to_str()).filter(|e| ["obj", "off", "ply", "stl"].contains(e))
+        else {
+            continue;
+        };
         let mesh = boundary::read(&path).unwrap();
         let target = out.path().join(path.file_name().unwrap());
         export::mesh(&mesh, &mesh.positions, None, &target).unwrap();
         let again = boundary::read(&target).unwrap();
-        let widest = mesh.positions.iter().zip(&again.positions).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f64::max);
+        let widest =
+            mesh.positions.iter().zip(&again.positions).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f64::max);
         assert_eq!(widest, 0.0, "{}", path.display());
         assert_eq!(mesh.triangles, again.triangles);
         if extension == "obj" {
             // Line by line the same, but for numbers' spelling and normals.
-            let keep = |text: &str| text.lines().filter(|l| !l.starts_with("v") && !l.starts_with("f ")).map(str::to_owned).collect::<Vec<_>>();
+            let keep = |text: &str| {
+                text.lines()
+                    .filter(|l| !l.starts_with("v") && !l.starts_with("f "))
+                    .map(str::to_owned)
+                    .collect::<Vec<_>>()
+            };
             let (was, is) = (std::fs::read_to_string(&path).unwrap(), std::fs::read_to_string(&target).unwrap());
             assert_eq!(keep(&was), keep(&is), "{}", path.display());
-            let faces = |text: &str| text.lines().filter(|l| l.starts_with("f ")).map(|l| l.split_whitespace().count()).collect::<Vec<_>>();
+            let faces = |text: &str| {
+                text.lines().filter(|l| l.starts_with("f ")).map(|l| l.split_whitespace().count()).collect::<Vec<_>>()
+            };
             assert_eq!(faces(&was), faces(&is), "polygons stay polygons");
         }
     }
@@ -219,7 +243,12 @@ fn an_obj_brings_its_library_and_textures() {
     assert!(again.warnings.is_empty(), "{:?}", again.warnings);
     assert_eq!(std::fs::read(out.path().join("wood grain.png")).unwrap(), png());
     let text = std::fs::read_to_string(&path).unwrap();
-    assert!(text.contains("# a comment that stays") && text.contains("mtllib grown_box.mtl") && text.contains("usemtl steel"), "{text}");
+    assert!(
+        text.contains("# a comment that stays")
+            && text.contains("mtllib grown_box.mtl")
+            && text.contains("usemtl steel"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -233,7 +262,9 @@ fn a_glb_from_a_textured_obj_holds_its_image_and_goes_back() {
     assert_eq!(names, ["wood", "steel"]);
     assert_eq!(file.images().count(), 1);
     let bytes = file.blob.as_deref().unwrap();
-    let gltf::image::Source::View { view, mime_type } = file.images().next().unwrap().source() else { panic!("the image is outside") };
+    let gltf::image::Source::View { view, mime_type } = file.images().next().unwrap().source() else {
+        panic!("the image is outside")
+    };
     assert_eq!((mime_type, &bytes[view.offset()..view.offset() + view.length()]), ("image/png", png().as_slice()));
 
     let obj = out.path().join("back.obj");
@@ -253,7 +284,8 @@ fn gltf_materials_and_extras_survive_word_for_word() {
         let (was, is) = (json_of(&std::fs::read(&path).unwrap()), json_of(&std::fs::read(&target).unwrap()));
         assert_eq!(was["materials"], is["materials"]);
         assert_eq!(was["textures"], is["textures"]);
-        let extras = |root: &serde_json::Value| root["nodes"].as_array().unwrap().iter().find_map(|n| n.get("extras").cloned());
+        let extras =
+            |root: &serde_json::Value| root["nodes"].as_array().unwrap().iter().find_map(|n| n.get("extras").cloned());
         assert_eq!(extras(&was), extras(&is));
         gltf::Gltf::open(&target).unwrap();
     }
@@ -262,7 +294,8 @@ fn gltf_materials_and_extras_survive_word_for_word() {
 #[test]
 fn attributes_survive_ply_and_glb() {
     let mut mesh = textured_box().1;
-    mesh.attributes.push(boundary::Attribute { name: "quality".into(), values: (0..8).map(|i| i as f32 / 3.0).collect() });
+    mesh.attributes
+        .push(boundary::Attribute { name: "quality".into(), values: (0..8).map(|i| i as f32 / 3.0).collect() });
     let out = tempfile::tempdir().unwrap();
     for (format, name) in [("ply", "quality"), ("glb", "_quality")] {
         let path = out.path().join(format!("a.{format}"));
@@ -282,7 +315,11 @@ fn importance_colours_replace_those_of_the_input() {
         let path = out.path().join(format!("a.{format}"));
         export::mesh(&mesh, &mesh.positions, Some(&colours), &path).unwrap();
         let again = boundary::read(&path).unwrap().base_colours().unwrap();
-        let widest = colours.iter().zip(&again).flat_map(|(a, b)| a.iter().zip(b).map(|(x, y)| (x - y).abs())).fold(0.0f32, f32::max);
+        let widest = colours
+            .iter()
+            .zip(&again)
+            .flat_map(|(a, b)| a.iter().zip(b).map(|(x, y)| (x - y).abs()))
+            .fold(0.0f32, f32::max);
         assert!(widest < 0.01, "{format}: {widest}");
     }
     assert_eq!(json_of(&std::fs::read(out.path().join("a.glb")).unwrap())["materials"].as_array().unwrap().len(), 1);
@@ -294,7 +331,12 @@ fn normals_of(path: &Path) -> Vec<(Vec3, Vec3)> {
     let blob = file.blob.clone().unwrap();
     let of = |primitive: gltf::Primitive| {
         let reader = primitive.reader(|_| Some(&blob));
-        reader.read_positions().unwrap().map(Vec3::from).zip(reader.read_normals().unwrap().map(Vec3::from)).collect::<Vec<_>>()
+        reader
+            .read_positions()
+            .unwrap()
+            .map(Vec3::from)
+            .zip(reader.read_normals().unwrap().map(Vec3::from))
+            .collect::<Vec<_>>()
     };
     file.meshes().flat_map(|mesh| mesh.primitives().flat_map(of).collect::<Vec<_>>()).collect()
 }
@@ -329,7 +371,8 @@ fn a_growth_plays_as_its_frames_say() {
     let path = out.path().join("growth.glb");
     let states = frames(&mesh, 5);
     let lambdas = [0.0, 0.1, 0.3, 0.6, 1.0];
-    let frames: Vec<_> = states.iter().zip(lambdas).map(|(positions, lambda)| GrowthFrame { lambda, positions }).collect();
+    let frames: Vec<_> =
+        states.iter().zip(lambdas).map(|(positions, lambda)| GrowthFrame { lambda, positions }).collect();
     export::growth(&mesh, &frames, None, 4.0, &path).unwrap();
 
     let file = gltf::Gltf::open(&path).unwrap();
@@ -338,29 +381,45 @@ fn a_growth_plays_as_its_frames_say() {
     let reader = animation.channels().next().unwrap();
     let reader = reader.reader(|_| Some(&blob));
     let times: Vec<f32> = reader.read_inputs().unwrap().collect();
-    let Some(gltf::animation::util::ReadOutputs::MorphTargetWeights(weights)) = reader.read_outputs() else { panic!("no weights") };
+    let Some(gltf::animation::util::ReadOutputs::MorphTargetWeights(weights)) = reader.read_outputs() else {
+        panic!("no weights")
+    };
     let weights: Vec<f32> = weights.into_f32().collect();
     assert_eq!(weights.len(), times.len() * 4);
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
     let close = |a: f32, b: f32| (a - b).abs() < 1e-5;
-    assert!(close(times[3], 2.4) && close(times[4], 4.0) && close(times[5], 5.0) && close(times[9], 9.0) && close(times[10], 10.0), "{times:?}");
+    assert!(
+        close(times[3], 2.4)
+            && close(times[4], 4.0)
+            && close(times[5], 5.0)
+            && close(times[9], 9.0)
+            && close(times[10], 10.0),
+        "{times:?}"
+    );
 
     let primitive = file.meshes().next().unwrap().primitives().next().unwrap();
     let primitive = primitive.reader(|_| Some(&blob));
     let base: Vec<Vec3> = primitive.read_positions().unwrap().map(Vec3::from).collect();
-    let targets: Vec<Vec<Vec3>> = primitive.read_morph_targets().map(|(p, _, _)| p.unwrap().map(Vec3::from).collect()).collect();
+    let targets: Vec<Vec<Vec3>> =
+        primitive.read_morph_targets().map(|(p, _, _)| p.unwrap().map(Vec3::from).collect()).collect();
     let shown = |key: usize| -> Vec<Vec3> {
         let own = &weights[4 * key..4 * key + 4];
         (0..8).map(|v| base[v] + (0..4).map(|t| own[t] * targets[t][v]).sum::<Vec3>()).collect()
     };
     for (key, frame) in (0..5).chain((0..5).rev()).chain([0]).enumerate() {
-        let widest = shown(key).iter().zip(&states[frame]).map(|(a, b)| (*a - b.as_vec3()).abs().max_element()).fold(0.0f32, f32::max);
+        let widest = shown(key)
+            .iter()
+            .zip(&states[frame])
+            .map(|(a, b)| (*a - b.as_vec3()).abs().max_element())
+            .fold(0.0f32, f32::max);
         assert!(widest < 1e-5, "key {key} shows frame {frame} up to {widest}");
-        let used: HashSet<usize> = weights[4 * key..].iter().take(8).enumerate().filter(|(_, w)| **w != 0.0).map(|(i, _)| i % 4).collect();
+        let used: HashSet<usize> =
+            weights[4 * key..].iter().take(8).enumerate().filter(|(_, w)| **w != 0.0).map(|(i, _)| i % 4).collect();
         assert!(used.len() <= 2, "two frames blend at most");
     }
     // Sabotage: another frame is not what the key shows, so the comparison can fail.
-    let off = shown(3).iter().zip(&states[2]).map(|(a, b)| (*a - b.as_vec3()).abs().max_element()).fold(0.0f32, f32::max);
+    let off =
+        shown(3).iter().zip(&states[2]).map(|(a, b)| (*a - b.as_vec3()).abs().max_element()).fold(0.0f32, f32::max);
     assert!(off > 0.1);
     // The rest shape, read back, is the input.
     is_same(&mesh, &mesh.positions, &boundary::read(&path).unwrap(), "glb").unwrap();

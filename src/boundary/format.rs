@@ -50,7 +50,8 @@ pub(crate) fn load(path: &Path) -> Result<Vec<u8>> {
         return Err(Error::in_file(path, "this is no regular file; copy its content to one first"));
     }
     if about.len() > MAX_FILE {
-        let sentence = format!("it has {} bytes, more than the {MAX_FILE} that are read; decimate the mesh first", about.len());
+        let sentence =
+            format!("it has {} bytes, more than the {MAX_FILE} that are read; decimate the mesh first", about.len());
         return Err(Error::in_file(path, sentence));
     }
     let mut bytes = Vec::new();

@@ -159,15 +159,24 @@ impl Boundary {
             let p = self.positions[vertex];
             return Err(Error::in_file(
                 path,
-                format!("vertex {vertex} is at ({}, {}, {}), which is no place; repair the file or remove that vertex", p.x, p.y, p.z),
+                format!(
+                    "vertex {vertex} is at ({}, {}, {}), which is no place; repair the file or remove that vertex",
+                    p.x, p.y, p.z
+                ),
             ));
         }
         if self.triangles.is_empty() {
-            let sentence = format!("it has {} vertices but no faces, so it bounds nothing; reconstruct a surface first", self.positions.len());
+            let sentence = format!(
+                "it has {} vertices but no faces, so it bounds nothing; reconstruct a surface first",
+                self.positions.len()
+            );
             return Err(Error::in_file(path, sentence));
         }
         if !self.triangles.iter().any(|t| self.is_proper(t)) {
-            let sentence = format!("each of its {} triangles has zero area; check the scale and the axes it was exported with", self.triangles.len());
+            let sentence = format!(
+                "each of its {} triangles has zero area; check the scale and the axes it was exported with",
+                self.triangles.len()
+            );
             return Err(Error::in_file(path, sentence));
         }
         if !self.is_sound() {

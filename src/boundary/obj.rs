@@ -146,7 +146,10 @@ impl Reader {
         };
         let position = DVec3::new(x, y, z);
         if !position.is_finite() {
-            return Err(format!("vertex {} is at \"{rest}\", which is no place; repair or remove it", self.boundary.positions.len() + 1));
+            return Err(format!(
+                "vertex {} is at \"{rest}\", which is no place; repair or remove it",
+                self.boundary.positions.len() + 1
+            ));
         }
         if let Some(&[r, g, b]) = values.get(3..6) {
             self.colours.resize(self.boundary.positions.len(), [1.0; 4]);
@@ -160,9 +163,13 @@ impl Reader {
         let source = &self.boundary.source;
         let start = self.vertex_of.len();
         for word in corners {
-            let corner = corner(word).ok_or_else(|| format!("\"{word}\" is no corner of a face; write it as 1, 1/1, 1//1 or 1/1/1"))?;
+            let corner = corner(word)
+                .ok_or_else(|| format!("\"{word}\" is no corner of a face; write it as 1, 1/1, 1//1 or 1/1/1"))?;
             let vertex = absolute(corner.vertex, self.boundary.positions.len()).ok_or_else(|| {
-                format!("a face refers to vertex {}, but vertices count from 1, or from -1 backwards; repair that face", corner.vertex)
+                format!(
+                    "a face refers to vertex {}, but vertices count from 1, or from -1 backwards; repair that face",
+                    corner.vertex
+                )
             })?;
             self.vertex_of.push(vertex);
             self.uv_of.push(corner.uv.and_then(|i| absolute(i, source.uvs.len())).unwrap_or(NONE));
@@ -197,7 +204,10 @@ impl Reader {
         let (uvs, normals) = (self.boundary.source.uvs.len(), self.boundary.source.normals.len());
         for face in &self.faces {
             if let Some(vertex) = self.vertex_of[face.corners.clone()].iter().find(|&&v| v as usize >= count) {
-                let sentence = format!("a face refers to vertex {}, but the file has {count}; repair or remove that face", u64::from(*vertex) + 1);
+                let sentence = format!(
+                    "a face refers to vertex {}, but the file has {count}; repair or remove that face",
+                    u64::from(*vertex) + 1
+                );
                 return Err(Error::in_file(path, format!("line {}: {sentence}", face.line)));
             }
         }
@@ -230,10 +240,12 @@ impl Reader {
             boundary.warnings.push(format!("{} faces with fewer than three corners are left out", self.short_faces));
         }
         if strays > 0 {
-            boundary.warnings.push(format!("{strays} corners refer to texture coordinates or normals that the file does not have"));
+            boundary
+                .warnings
+                .push(format!("{strays} corners refer to texture coordinates or normals that the file does not have"));
         }
         boundary.triangulate_polygons();
-        boundary.regions_from_objects();
+        boundary.regions_from_parts();
         Ok(boundary)
     }
 }
@@ -252,7 +264,11 @@ fn numbers<const N: usize>(rest: &str, least: usize) -> Result<[f64; N], String>
         *slot = value;
         found += 1;
     }
-    if found < least { Err(format!("\"{rest}\" should start with {least} numbers; repair that line")) } else { Ok(values) }
+    if found < least {
+        Err(format!("\"{rest}\" should start with {least} numbers; repair that line"))
+    } else {
+        Ok(values)
+    }
 }
 
 /// Channels `red`, `green`, `blue` and, where it is ever below 1, `alpha`; 0..=255 becomes 0..=1.
@@ -260,8 +276,10 @@ pub(crate) fn colour_attributes(colours: &[[f32; 4]]) -> Vec<Attribute> {
     let scale = if colours.iter().any(|c| c.iter().any(|&v| v > 1.0)) { 255.0 } else { 1.0 };
     let scaled = |c: &[f32; 4], i: usize| if i == 3 && c[3] == 1.0 { 1.0 } else { c[i] / scale };
     let with_alpha = colours.iter().any(|c| scaled(c, 3) != 1.0);
-    let channel =
-        |i: usize| Attribute { name: COLOUR_CHANNELS[1][i].into(), values: colours.iter().map(|c| scaled(c, i)).collect() };
+    let channel = |i: usize| Attribute {
+        name: COLOUR_CHANNELS[1][i].into(),
+        values: colours.iter().map(|c| scaled(c, i)).collect(),
+    };
     (0..if with_alpha { 4 } else { 3 }).map(channel).collect()
 }
 
@@ -284,21 +302,25 @@ impl Boundary {
         }
     }
 
-    /// Regions named for the objects, where there are at least two names; a vertex belongs to the first that uses it.
-    pub(crate) fn regions_from_objects(&mut self) {
+    /// Regions named for the objects of the parts or, where these have fewer than two names, for their materials; none where
+    /// these have fewer than two as well. A vertex belongs to the first that uses it.
+    pub(crate) fn regions_from_parts(&mut self) {
         let source = &self.source;
-        let used = |object: u32| source.parts.iter().any(|part| part.object == object);
-        let named = (0..source.objects.len() as u32).filter(|&o| used(o) && !source.objects[o as usize].name.is_empty());
-        if named.count() < 2 {
-            return;
-        }
+        let by_object = |part: &Part| source.objects.get(part.object as usize).map(|object| object.name.as_str());
+        let by_material = |part: &Part| source.materials.materials.get(part.material as usize)?.get("name")?.as_str();
+        let (objects, materials): (Vec<_>, Vec<_>) =
+            source.parts.iter().map(|p| (by_object(p), by_material(p))).unzip();
+        let is_told_apart = |names: &[Option<&str>]| {
+            let mut named = names.iter().flatten().filter(|name| !name.is_empty());
+            named.next().is_some_and(|first| named.any(|other| other != first))
+        };
+        let Some(names) = [objects, materials].into_iter().find(|names| is_told_apart(names)) else { return };
         let mut regions = Regions { names: Vec::new(), of_vertex: vec![NONE; self.positions.len()] };
         let mut index_of: HashMap<&str, u32> = HashMap::new();
-        for polygon in 0..source.polygons.len() {
-            let Some(part) = source.polygon_parts.get(polygon) else { continue };
-            let Some(object) = source.objects.get(source.parts[*part as usize].object as usize) else { continue };
-            let index = *index_of.entry(&object.name).or_insert_with(|| {
-                regions.names.push(object.name.clone());
+        for (polygon, &part) in source.polygon_parts.iter().enumerate() {
+            let Some(name) = names[part as usize].filter(|name| !name.is_empty()) else { continue };
+            let index = *index_of.entry(name).or_insert_with(|| {
+                regions.names.push(name.to_owned());
                 regions.names.len() as u32 - 1
             });
             for &vertex in &source.polygons.corners[source.polygons.range(polygon)] {

@@ -38,7 +38,8 @@ pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary> {
 }
 
 fn parse(text: &Arc<str>) -> Result<Boundary, String> {
-    let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, content(line))).filter(|(_, line)| !line.is_empty());
+    let mut lines =
+        text.lines().enumerate().map(|(i, line)| (i + 1, content(line))).filter(|(_, line)| !line.is_empty());
     let mut before = 1;
     let (mut number, first) = lines.next().ok_or("there is only a comment in it; export the mesh again")?;
     let (keyword, mut counts) = match first.split_once("OFF") {
@@ -46,7 +47,9 @@ fn parse(text: &Arc<str>) -> Result<Boundary, String> {
         None => ("", first),
     };
     if keyword.contains('4') || counts.starts_with(['n', 'B']) {
-        return Err(format!("line {number}: \"{first}\" announces more than three dimensions or binary numbers; save it as plain OFF"));
+        return Err(format!(
+            "line {number}: \"{first}\" announces more than three dimensions or binary numbers; save it as plain OFF"
+        ));
     }
     if counts.is_empty() {
         (number, counts) = lines.next().ok_or("it ends after its first line; get the whole file again")?;
@@ -55,22 +58,30 @@ fn parse(text: &Arc<str>) -> Result<Boundary, String> {
     let (normals, colours, uvs) = (keyword.contains('N'), keyword.contains('C'), keyword.contains("ST"));
     let mut claims = counts.split_whitespace().map(|word| word.parse::<usize>());
     let (Some(Ok(vertices)), Some(Ok(faces))) = (claims.next(), claims.next()) else {
-        return Err(format!("line {number}: \"{counts}\" should say how many vertices and faces there are; repair that line"));
+        return Err(format!(
+            "line {number}: \"{counts}\" should say how many vertices and faces there are; repair that line"
+        ));
     };
     // A vertex takes six characters at least ("0 0 0\n"), a face two.
     if vertices.saturating_mul(6).saturating_add(faces.saturating_mul(2)) > text.len() + 2 {
         let length = text.len();
-        return Err(format!("line {number}: it claims {vertices} vertices and {faces} faces, which {length} bytes cannot hold; get the whole file again"));
+        return Err(format!(
+            "line {number}: it claims {vertices} vertices and {faces} faces, which {length} bytes cannot hold; get the whole file again"
+        ));
     }
 
     let mut boundary = Boundary::default();
     let mut tints = Vec::new();
     for vertex in 0..vertices {
-        let (number, line) = lines.next().ok_or_else(|| format!("it ends at vertex {vertex} of {vertices}; get the whole file again"))?;
+        let (number, line) = lines
+            .next()
+            .ok_or_else(|| format!("it ends at vertex {vertex} of {vertices}; get the whole file again"))?;
         let values: Vec<f64> = line.split_whitespace().map_while(|word| word.parse().ok()).collect();
         let expected = 3 + if normals { 3 } else { 0 };
         if values.len() < expected {
-            return Err(format!("line {number}: vertex {vertex} should have {expected} numbers, not \"{line}\"; repair that line"));
+            return Err(format!(
+                "line {number}: vertex {vertex} should have {expected} numbers, not \"{line}\"; repair that line"
+            ));
         }
         boundary.positions.push(DVec3::new(values[0], values[1], values[2]));
         if normals {
@@ -96,12 +107,17 @@ fn parse(text: &Arc<str>) -> Result<Boundary, String> {
     let mut short = 0;
     let mut corners = Vec::new();
     for face in 0..faces {
-        let (number, line) = lines.next().ok_or_else(|| format!("it ends at face {face} of {faces}; get the whole file again"))?;
+        let (number, line) =
+            lines.next().ok_or_else(|| format!("it ends at face {face} of {faces}; get the whole file again"))?;
         let mut words = line.split_whitespace();
-        let sides: usize = words.next().and_then(|word| word.parse().ok()).ok_or_else(|| format!("line {number}: face {face} should start with its number of corners; repair that line"))?;
+        let sides: usize = words.next().and_then(|word| word.parse().ok()).ok_or_else(|| {
+            format!("line {number}: face {face} should start with its number of corners; repair that line")
+        })?;
         corners.clear();
         for _ in 0..sides {
-            let word = words.next().ok_or_else(|| format!("line {number}: face {face} claims {sides} corners but has fewer; repair that line"))?;
+            let word = words.next().ok_or_else(|| {
+                format!("line {number}: face {face} claims {sides} corners but has fewer; repair that line")
+            })?;
             let index = word.parse::<usize>().ok().filter(|&i| i < vertices).ok_or_else(|| {
                 format!("line {number}: face {face} refers to vertex {word}, but there are {vertices}, counted from 0; repair that line")
             })?;

@@ -11,13 +11,16 @@ use super::{Attribute, Boundary, format, mtl};
 use crate::error::{Error, Result};
 
 /// Names of texture coordinates in use among writers.
-pub(crate) const UV_NAMES: [[&str; 2]; 4] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
+pub(crate) const UV_NAMES: [[&str; 2]; 4] =
+    [["s", "t"], ["u", "v"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
 
 /// Reads a PLY.
 pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary> {
     let table = PlyTable::parse(bytes).map_err(|sentence| Error::in_file(path, sentence))?;
     let mut boundary = Boundary::default();
-    let vertex = table.element("vertex").ok_or_else(|| Error::in_file(path, "the header has no element vertex; export the mesh again"))?;
+    let vertex = table
+        .element("vertex")
+        .ok_or_else(|| Error::in_file(path, "the header has no element vertex; export the mesh again"))?;
     vertices(vertex, &mut boundary).map_err(|sentence| Error::in_file(path, sentence))?;
     for (name, is_strip) in [("face", false), ("tristrips", true)] {
         if let Some(element) = table.element(name) {
@@ -48,12 +51,14 @@ fn vertices(vertex: &Element, boundary: &mut Boundary) -> Result<(), String> {
     boundary.positions = (0..vertex.count).map(|i| DVec3::new(x.values[i], y.values[i], z.values[i])).collect();
     let mut known = vec!["x", "y", "z"];
     if let (Some(x), Some(y), Some(z)) = (column("nx"), column("ny"), column("nz")) {
-        boundary.source.normals = (0..vertex.count).map(|i| Vec3::new(x.values[i] as f32, y.values[i] as f32, z.values[i] as f32)).collect();
+        boundary.source.normals =
+            (0..vertex.count).map(|i| Vec3::new(x.values[i] as f32, y.values[i] as f32, z.values[i] as f32)).collect();
         known.extend(["nx", "ny", "nz"]);
     }
     for [u, v] in UV_NAMES {
         if let (Some(us), Some(vs), true) = (column(u), column(v), boundary.source.uvs.is_empty()) {
-            boundary.source.uvs = us.values.iter().zip(&vs.values).map(|(&u, &v)| Vec2::new(u as f32, 1.0 - v as f32)).collect();
+            boundary.source.uvs =
+                us.values.iter().zip(&vs.values).map(|(&u, &v)| Vec2::new(u as f32, 1.0 - v as f32)).collect();
             known.extend([u, v]);
         }
     }
@@ -74,7 +79,8 @@ fn colour_scale(property: &Property) -> f64 {
 /// Appends the faces of an element, with their own texture coordinates where they have some.
 fn faces(element: &Element, is_strip: bool, boundary: &mut Boundary) -> Result<(), String> {
     let name = &element.name;
-    let lists = ["vertex_indices", "vertex_index"].iter().find_map(|n| element.property(n)).filter(|p| p.length.is_some());
+    let lists =
+        ["vertex_indices", "vertex_index"].iter().find_map(|n| element.property(n)).filter(|p| p.length.is_some());
     let lists = lists.ok_or_else(|| format!("its element {name} has no list vertex_indices; export the mesh again"))?;
     let texcoords = element.property("texcoord").filter(|p| p.length.is_some() && !is_strip);
     let count = boundary.positions.len();
@@ -89,7 +95,9 @@ fn faces(element: &Element, is_strip: bool, boundary: &mut Boundary) -> Result<(
             } else if index >= 0.0 && index < count as f64 && index.fract() == 0.0 {
                 corners.push(index as u32);
             } else {
-                return Err(format!("{name} {row} refers to vertex {index}, but there are {count}; repair or remove that {name}"));
+                return Err(format!(
+                    "{name} {row} refers to vertex {index}, but there are {count}; repair or remove that {name}"
+                ));
             }
         }
         if is_strip {
@@ -131,7 +139,10 @@ fn texture(path: &Path, table: &PlyTable, boundary: &mut Boundary) {
     source.materials.images.push(image);
     source.materials.textures.push(json!({ "source": 0 }));
     let pbr = json!({ "baseColorTexture": { "index": 0 }, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
-    source.materials.materials.push(json!({ "name": format::text(file.as_bytes()), "pbrMetallicRoughness": pbr, "doubleSided": true }));
+    source
+        .materials
+        .materials
+        .push(json!({ "name": format::text(file.as_bytes()), "pbrMetallicRoughness": pbr, "doubleSided": true }));
     source.parts.push(Part { object: NONE, material: 0, extensions: None });
     source.polygon_parts = vec![0; source.polygons.len()];
 }

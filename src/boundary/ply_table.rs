@@ -172,7 +172,8 @@ impl Numbers<'_> {
             let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
             let word = String::from_utf8_lossy(&rest[..end]);
             self.bytes = &rest[end..];
-            let value: f64 = word.parse().map_err(|_| format!("\"{}\" is no number", word.chars().take(20).collect::<String>()))?;
+            let value: f64 =
+                word.parse().map_err(|_| format!("\"{}\" is no number", word.chars().take(20).collect::<String>()))?;
             return Ok(if scalar == Scalar::F32 { f64::from(value as f32) } else { value });
         }
         let size = scalar.bytes();
@@ -218,7 +219,9 @@ impl PlyTable {
             let _ = writeln!(head, "element {} {}", element.name, element.count);
             for property in &element.properties {
                 let _ = match property.length {
-                    Some(length) => writeln!(head, "property list {} {} {}", length.name(), property.scalar.name(), property.name),
+                    Some(length) => {
+                        writeln!(head, "property list {} {} {}", length.name(), property.scalar.name(), property.name)
+                    }
                     None => writeln!(head, "property {} {}", property.scalar.name(), property.name),
                 };
             }
@@ -244,7 +247,10 @@ impl Element {
         // The last number of a text may lack its space.
         if self.count.saturating_mul(least) > numbers.bytes.len() + 1 {
             let left = numbers.bytes.len();
-            return Err(format!("the header claims {} {} rows, but only {left} bytes are left; get the whole file again", self.count, self.name));
+            return Err(format!(
+                "the header claims {} {} rows, but only {left} bytes are left; get the whole file again",
+                self.count, self.name
+            ));
         }
         if self.properties.is_empty() {
             return Ok(());
@@ -252,7 +258,10 @@ impl Element {
         for row in 0..self.count {
             for property in &mut self.properties {
                 property.read(numbers).map_err(|why| {
-                    format!("{} {row}, property {}: {why}; get the whole file again or repair that row", self.name, property.name)
+                    format!(
+                        "{} {row}, property {}: {why}; get the whole file again or repair that row",
+                        self.name, property.name
+                    )
                 })?;
             }
         }
@@ -338,23 +347,34 @@ fn header(bytes: &[u8]) -> Result<(PlyTable, usize), String> {
             ["format", "binary_little_endian", _] => table.encoding = Encoding::Little,
             ["format", "binary_big_endian", _] => table.encoding = Encoding::Big,
             ["element", name, count] => {
-                let count = count.parse().map_err(|_| format!("line {number}: \"{count}\" is no number of {name} rows; repair the header"))?;
+                let count = count.parse().map_err(|_| {
+                    format!("line {number}: \"{count}\" is no number of {name} rows; repair the header")
+                })?;
                 table.elements.push(Element { name: (*name).into(), count, properties: Vec::new() });
             }
             ["property", types @ .., name] => {
-                let unknown = || format!("line {number}: \"{line}\" has a type that PLY does not know; repair the header");
+                let unknown =
+                    || format!("line {number}: \"{line}\" has a type that PLY does not know; repair the header");
                 let (length, scalar) = match types {
                     ["list", length, scalar] => (Some(Scalar::named(length).ok_or_else(unknown)?), scalar),
                     [scalar] => (None, scalar),
                     _ => return Err(unknown()),
                 };
                 let scalar = Scalar::named(scalar).ok_or_else(unknown)?;
-                let element = table.elements.last_mut().ok_or_else(|| format!("line {number}: a property before any element; repair the header"))?;
+                let element = table
+                    .elements
+                    .last_mut()
+                    .ok_or_else(|| format!("line {number}: a property before any element; repair the header"))?;
                 let starts = if length.is_some() { vec![0] } else { Vec::new() };
                 element.properties.push(Property { name: (*name).into(), scalar, length, values: Vec::new(), starts });
             }
             ["end_header"] => return Ok((table, at)),
-            _ => return Err(format!("line {number}: \"{}\" is no line of a PLY header; repair it", line.chars().take(40).collect::<String>())),
+            _ => {
+                return Err(format!(
+                    "line {number}: \"{}\" is no line of a PLY header; repair it",
+                    line.chars().take(40).collect::<String>()
+                ));
+            }
         }
     }
     Err("the header has no end_header; get the whole file again".into())

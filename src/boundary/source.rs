@@ -157,9 +157,10 @@ impl Source {
             && below(&self.corner_uvs, self.uvs.len())
             && below(&self.corner_normals, self.normals.len())
             && self.polygon_parts.iter().all(|&p| (p as usize) < self.parts.len())
-            && self.parts.iter().all(|p| {
-                below(&[p.object], self.objects.len()) && below(&[p.material], self.materials.materials.len())
-            })
+            && self
+                .parts
+                .iter()
+                .all(|p| below(&[p.object], self.objects.len()) && below(&[p.material], self.materials.materials.len()))
     }
 }
 

@@ -33,7 +33,9 @@ pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary> {
     if is_text && !has_length_of_binary {
         return ascii(&format::text(bytes)).map_err(|sentence| Error::in_file(path, sentence));
     }
-    let count = claimed.ok_or_else(|| Error::in_file(path, format!("{} bytes are too few for an STL; get the whole file again", bytes.len())))?;
+    let count = claimed.ok_or_else(|| {
+        Error::in_file(path, format!("{} bytes are too few for an STL; get the whole file again", bytes.len()))
+    })?;
     binary(bytes, count).map_err(|sentence| Error::in_file(path, sentence))
 }
 
@@ -46,7 +48,9 @@ fn binary(bytes: &[u8], count: usize) -> Result<Boundary, String> {
     let mut boundary = Boundary::default();
     let mut extras = Vec::with_capacity(count);
     for triangle in body.chunks_exact(50).take(count) {
-        let number = |at: usize| f64::from(f32::from_le_bytes([triangle[at], triangle[at + 1], triangle[at + 2], triangle[at + 3]]));
+        let number = |at: usize| {
+            f64::from(f32::from_le_bytes([triangle[at], triangle[at + 1], triangle[at + 2], triangle[at + 3]]))
+        };
         let first = boundary.positions.len() as u32;
         boundary.positions.extend([12, 24, 36].map(|at| DVec3::new(number(at), number(at + 4), number(at + 8))));
         boundary.triangles.push([first, first + 1, first + 2]);
@@ -82,7 +86,9 @@ fn ascii(text: &str) -> Result<Boundary, String> {
                 in_facet += 1;
             }
             Some("endfacet") if in_facet != 3 => {
-                return Err(format!("line {number}: a facet has {in_facet} vertices; an STL has triangles only, so repair that facet"));
+                return Err(format!(
+                    "line {number}: a facet has {in_facet} vertices; an STL has triangles only, so repair that facet"
+                ));
             }
             Some("endfacet") => {
                 let next = boundary.positions.len() as u32;
@@ -97,7 +103,7 @@ fn ascii(text: &str) -> Result<Boundary, String> {
     if boundary.positions.len() != 3 * boundary.triangles.len() {
         return Err(format!("it ends within facet {}; get the whole file again", boundary.triangles.len()));
     }
-    boundary.regions_from_objects();
+    boundary.regions_from_parts();
     boundary.source.original = Original::Stl(StlKind::Ascii);
     Ok(boundary)
 }

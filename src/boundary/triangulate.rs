@@ -2,9 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-/// Polygons with more corners are fanned: ear clipping takes quadratic time, and no modeller makes a concave face this large.
-/// A tenth would fan real caps of lathed parts; ten times would let one malicious face take minutes.
-const MAX_EARS: usize = 2048;
+/// Polygons with more corners are fanned: ear clipping takes at least quadratic time, and no modeller makes a concave face this
+/// large. A tenth would fan real caps of lathed parts; ten times would let one malicious face take minutes.
+const MAX_EARS: usize = 1024;
 
 /// Triangles of one polygon, as indices into `corners` (`0..corners.len()`), in the polygon's orientation.
 ///
@@ -43,7 +43,8 @@ fn clip_ears(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
         return;
     }
     let (u, v) = normal.any_orthonormal_pair();
-    let flat: Vec<DVec2> = corners.iter().map(|&p| DVec2::new((p - corners[0]).dot(u), (p - corners[0]).dot(v))).collect();
+    let flat: Vec<DVec2> =
+        corners.iter().map(|&p| DVec2::new((p - corners[0]).dot(u), (p - corners[0]).dot(v))).collect();
     // (u, v, normal) may be left-handed; the sign of the plane's area says so.
     let area: f64 = (0..flat.len()).map(|i| flat[i].perp_dot(flat[(i + 1) % flat.len()])).sum();
     let sign = if area < 0.0 { -1.0 } else { 1.0 };
@@ -60,15 +61,23 @@ fn clip_ears(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
         let [a, b, c] = [at % count, (at + 1) % count, (at + 2) % count].map(|i| ring[i]);
         let is_ear = turn(a, b, c) > 0.0
             && ring.iter().all(|&p| {
-                p == a || p == b || p == c || [a, b, c].iter().any(|&q| flat[q as usize] == flat[p as usize])
-                    || turn(a, b, p) < 0.0 || turn(b, c, p) < 0.0 || turn(c, a, p) < 0.0
+                p == a
+                    || p == b
+                    || p == c
+                    || [a, b, c].iter().any(|&q| flat[q as usize] == flat[p as usize])
+                    || turn(a, b, p) < 0.0
+                    || turn(b, c, p) < 0.0
+                    || turn(c, a, p) < 0.0
             });
-        // A ring without ear is folded or self-crossing: no triangulation is right, so clip on and end.
-        if is_ear || misses > count {
+        if is_ear {
             triangles.push([a, b, c]);
             ring.remove((at + 1) % count);
             at = if at >= ring.len() { 0 } else { at };
             misses = 0;
+        } else if misses > count {
+            // A ring without ear is folded or crosses itself: no triangulation is right, so any will do.
+            triangles.extend((1..count - 1).map(|i| [ring[0], ring[i], ring[i + 1]]));
+            return;
         } else {
             at = (at + 1) % count;
             misses += 1;
@@ -106,7 +115,17 @@ mod tests {
                 DVec3::new(angle.cos() * radius, angle.sin() * radius, 0.0)
             })
             .collect();
-        let comb = flat(&[[0.0, 0.0], [5.0, 0.0], [5.0, 3.0], [4.0, 1.0], [3.0, 3.0], [2.0, 1.0], [1.0, 3.0], [0.5, 1.0], [0.0, 3.0]]);
+        let comb = flat(&[
+            [0.0, 0.0],
+            [5.0, 0.0],
+            [5.0, 3.0],
+            [4.0, 1.0],
+            [3.0, 3.0],
+            [2.0, 1.0],
+            [1.0, 3.0],
+            [0.5, 1.0],
+            [0.0, 3.0],
+        ]);
         for polygon in [arrow, star, comb] {
             let (sum, least) = area(&polygon);
             assert!((sum - newell(&polygon).z).abs() < 1e-12 && least > 0.0, "{sum} {least}");

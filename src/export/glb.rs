@@ -91,7 +91,11 @@ impl Glb {
         let indices = || slice.triangles.iter().flatten().map(|&row| row - start);
         // The largest number of each type is reserved for primitive restart.
         let is_short = slice.window.len() < usize::from(u16::MAX);
-        let bytes: Vec<u8> = if is_short { indices().flat_map(|i| (i as u16).to_le_bytes()).collect() } else { indices().flat_map(u32::to_le_bytes).collect() };
+        let bytes: Vec<u8> = if is_short {
+            indices().flat_map(|i| (i as u16).to_le_bytes()).collect()
+        } else {
+            indices().flat_map(u32::to_le_bytes).collect()
+        };
         let view = self.view(&bytes, json!({ "target": ELEMENT_ARRAY_BUFFER }));
         let component = if is_short { 5123 } else { 5125 };
         self.accessors.push(json!({ "bufferView": view, "componentType": component, "count": 3 * slice.triangles.len(), "type": "SCALAR" }));
@@ -103,18 +107,32 @@ impl Glb {
         let source = &boundary.source.materials;
         if is_neutral {
             let pbr = json!({ "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8 });
-            self.root.insert("materials".into(), json!([{ "name": "neutral", "pbrMetallicRoughness": pbr, "doubleSided": true }]));
+            self.root.insert(
+                "materials".into(),
+                json!([{ "name": "neutral", "pbrMetallicRoughness": pbr, "doubleSided": true }]),
+            );
             return;
         }
-        let images: Vec<Value> = source.images.iter().map(|image| {
-            let view = self.view(&image.bytes, json!({}));
-            json!({ "name": image.name, "mimeType": image.mime, "bufferView": view })
-        }).collect();
-        let arrays = [("materials", &source.materials), ("textures", &source.textures), ("samplers", &source.samplers), ("images", &images)];
+        let images: Vec<Value> = source
+            .images
+            .iter()
+            .map(|image| {
+                let view = self.view(&image.bytes, json!({}));
+                json!({ "name": image.name, "mimeType": image.mime, "bufferView": view })
+            })
+            .collect();
+        let arrays = [
+            ("materials", &source.materials),
+            ("textures", &source.textures),
+            ("samplers", &source.samplers),
+            ("images", &images),
+        ];
         for (name, array) in arrays.into_iter().filter(|(_, array)| !array.is_empty()) {
             self.root.insert(name.into(), json!(array));
         }
-        for (name, list) in [("extensionsUsed", &source.extensions_used), ("extensionsRequired", &source.extensions_required)] {
+        for (name, list) in
+            [("extensionsUsed", &source.extensions_used), ("extensionsRequired", &source.extensions_required)]
+        {
             if !list.is_empty() {
                 self.root.insert(name.into(), json!(list));
             }
@@ -126,7 +144,8 @@ impl Glb {
 
     /// The file.
     pub fn finish(mut self, path: &Path) -> Result<Vec<u8>> {
-        let mut root = json!({ "asset": { "version": "2.0", "generator": concat!("homunculus ", env!("CARGO_PKG_VERSION")) } });
+        let mut root =
+            json!({ "asset": { "version": "2.0", "generator": concat!("homunculus ", env!("CARGO_PKG_VERSION")) } });
         if let Value::Object(root) = &mut root {
             root.append(&mut self.root);
         }
@@ -137,8 +156,12 @@ impl Glb {
         text.resize(text.len().next_multiple_of(4), b' ');
         let total = 12 + 8 + text.len() + 8 + self.binary.len();
         let size = |length: usize| u32::try_from(length).map(u32::to_le_bytes);
-        let (Ok(total), Ok(text_size), Ok(binary_size)) = (size(total), size(text.len()), size(self.binary.len())) else {
-            return Err(Error::in_file(path, "it would be larger than the 4 GiB a GLB can be; use fewer frames or a coarser mesh"));
+        let (Ok(total), Ok(text_size), Ok(binary_size)) = (size(total), size(text.len()), size(self.binary.len()))
+        else {
+            return Err(Error::in_file(
+                path,
+                "it would be larger than the 4 GiB a GLB can be; use fewer frames or a coarser mesh",
+            ));
         };
         let mut bytes = Vec::with_capacity(28 + text.len() + self.binary.len());
         bytes.extend_from_slice(b"glTF\x02\0\0\0");
@@ -211,7 +234,12 @@ impl<'a> Scene<'a> {
         if self.surface.boundary.source.corner_uvs.is_empty() {
             return;
         }
-        let values = self.table.rows.iter().flat_map(|row| uvs.get(row.uv as usize).copied().unwrap_or_default().to_array().map(finite)).collect();
+        let values = self
+            .table
+            .rows
+            .iter()
+            .flat_map(|row| uvs.get(row.uv as usize).copied().unwrap_or_default().to_array().map(finite))
+            .collect();
         self.put("TEXCOORD_0", values, 2);
     }
 
@@ -242,7 +270,11 @@ impl<'a> Scene<'a> {
     /// Scene, nodes and meshes: a node for each object where objects have vertices of their own, else one.
     ///
     /// `on_primitive` and `on_mesh` may add members.
-    pub fn nodes(&mut self, mut on_primitive: impl FnMut(&mut Glb, &Range<usize>, &mut Value), mut on_mesh: impl FnMut(&mut Value)) -> Map<String, Value> {
+    pub fn nodes(
+        &mut self,
+        mut on_primitive: impl FnMut(&mut Glb, &Range<usize>, &mut Value),
+        mut on_mesh: impl FnMut(&mut Value),
+    ) -> Map<String, Value> {
         let objects = &self.surface.boundary.source.objects;
         let is_parted = self.table.is_separable();
         let (mut nodes, mut meshes): (Vec<Value>, Vec<Value>) = (Vec::new(), Vec::new());
@@ -253,7 +285,10 @@ impl<'a> Scene<'a> {
             if last != Some(object) {
                 last = Some(object);
                 let known = objects.get(object as usize);
-                let name = known.map(|o| o.name.as_str()).filter(|name| !name.is_empty()).unwrap_or(&self.surface.boundary.name);
+                let name = known
+                    .map(|o| o.name.as_str())
+                    .filter(|name| !name.is_empty())
+                    .unwrap_or(&self.surface.boundary.name);
                 let mut node = json!({ "mesh": meshes.len(), "name": name });
                 if let Some(extras) = known.and_then(|o| o.extras.clone()) {
                     node["extras"] = extras;
@@ -296,6 +331,8 @@ fn le_bytes(values: &[f32]) -> Vec<u8> {
 }
 
 fn bounds(values: &[f32], width: usize) -> (Vec<f32>, Vec<f32>) {
-    let fold = |pick: fn(f32, f32) -> f32| (0..width).map(|i| values.iter().skip(i).step_by(width).copied().reduce(pick).unwrap_or(0.0)).collect();
+    let fold = |pick: fn(f32, f32) -> f32| {
+        (0..width).map(|i| values.iter().skip(i).step_by(width).copied().reduce(pick).unwrap_or(0.0)).collect()
+    };
     (fold(f32::min), fold(f32::max))
 }

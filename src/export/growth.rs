@@ -52,8 +52,16 @@ pub fn growth_steps(available: usize, targets: usize) -> Vec<usize> {
 ///
 /// [`Error::Input`] where there is nothing to play or a position is out of the range of single precision; [`Error::File`] where
 /// the system refuses. Nothing is left under the final name then.
-pub fn growth(boundary: &Boundary, frames: &[GrowthFrame], colours: Option<&[[f32; 3]]>, seconds: f32, path: &Path) -> Result<()> {
-    let [rest, grown @ ..] = frames else { return Err(Error::in_file(path, "a growth needs a frame at rest; record some frames first")) };
+pub fn growth(
+    boundary: &Boundary,
+    frames: &[GrowthFrame],
+    colours: Option<&[[f32; 3]]>,
+    seconds: f32,
+    path: &Path,
+) -> Result<()> {
+    let [rest, grown @ ..] = frames else {
+        return Err(Error::in_file(path, "a growth needs a frame at rest; record some frames first"));
+    };
     if grown.is_empty() {
         return Err(Error::in_file(path, "a growth needs a second frame; record more frames"));
     }
@@ -68,7 +76,9 @@ pub fn growth(boundary: &Boundary, frames: &[GrowthFrame], colours: Option<&[[f3
     let surface = Surface { boundary, positions: rest.positions, colours };
     let mut scene = Scene::new(&surface);
     let (places, normals) = scene.moment(rest.positions);
-    let differences = |now: &[Vec3], rest: &[Vec3]| now.iter().zip(rest).flat_map(|(n, r)| (*n - *r).to_array()).collect::<Vec<f32>>();
+    let differences = |now: &[Vec3], rest: &[Vec3]| {
+        now.iter().zip(rest).flat_map(|(n, r)| (*n - *r).to_array()).collect::<Vec<f32>>()
+    };
     let mut targets = Vec::with_capacity(grown.len());
     for frame in grown {
         let (moved, turned) = scene.moment(frame.positions);
@@ -81,7 +91,8 @@ pub fn growth(boundary: &Boundary, frames: &[GrowthFrame], colours: Option<&[[f3
     let mut members = scene.nodes(
         |glb, window, primitive| {
             let targets = windows.entry(window.clone()).or_insert_with(|| {
-                let target = |(p, n): &(_, _)| json!({ "POSITION": glb.window(p, window), "NORMAL": glb.window(n, window) });
+                let target =
+                    |(p, n): &(_, _)| json!({ "POSITION": glb.window(p, window), "NORMAL": glb.window(n, window) });
                 targets.iter().map(target).collect::<Vec<Value>>()
             });
             primitive["targets"] = json!(targets);
@@ -94,7 +105,8 @@ pub fn growth(boundary: &Boundary, frames: &[GrowthFrame], colours: Option<&[[f3
     let (times, weights) = keys(frames, seconds);
     let (input, output) = (scene.glb.scalars(&times), scene.glb.scalars(&weights));
     let count = members.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
-    let channels: Vec<Value> = (0..count).map(|node| json!({ "sampler": 0, "target": { "node": node, "path": "weights" } })).collect();
+    let channels: Vec<Value> =
+        (0..count).map(|node| json!({ "sampler": 0, "target": { "node": node, "path": "weights" } })).collect();
     let sampler = json!({ "input": input, "output": output, "interpolation": "LINEAR" });
     members.insert("animations".into(), json!([{ "name": "growth", "channels": channels, "samplers": [sampler] }]));
     scene.glb.root.extend(members);

@@ -56,13 +56,20 @@ pub(super) fn write(boundary: &Boundary, obj: &Path) -> Result<Option<(String, V
     let mut out = String::new();
     let mut names: Vec<String> = Vec::new();
     for (index, material) in materials.materials.iter().enumerate() {
-        let given = material.get("name").and_then(Value::as_str).map(|name| one_line(name).replace(' ', "_")).filter(|name| !name.is_empty());
+        let given = material
+            .get("name")
+            .and_then(Value::as_str)
+            .map(|name| one_line(name).replace(' ', "_"))
+            .filter(|name| !name.is_empty());
         let name = given.filter(|name| !names.contains(name)).unwrap_or_else(|| format!("material_{index}"));
         let pbr = &material["pbrMetallicRoughness"];
         let factor = |i: usize| pbr["baseColorFactor"][i].as_f64().map_or(1.0, |v| v.clamp(0.0, 1.0) as f32);
         let [r, g, b, opacity] = srgb([factor(0), factor(1), factor(2), factor(3)]);
         let _ = writeln!(out, "newmtl {name}\nKd {r} {g} {b}\nd {opacity}");
-        let image = pbr["baseColorTexture"]["index"].as_u64().and_then(|t| materials.textures.get(t as usize)).and_then(|t| t["source"].as_u64());
+        let image = pbr["baseColorTexture"]["index"]
+            .as_u64()
+            .and_then(|t| materials.textures.get(t as usize))
+            .and_then(|t| t["source"].as_u64());
         if let Some((index, image)) = image.and_then(|i| Some((i, materials.images.get(i as usize)?))) {
             let extension = image.mime.rsplit('/').next().unwrap_or("png").replace("jpeg", "jpg");
             let file = place(obj, &format!("{stem}_texture_{index}.{extension}"), &image.bytes)?;
@@ -81,14 +88,16 @@ fn place(obj: &Path, wanted: &str, bytes: &[u8]) -> Result<String> {
         !path.exists() || std::fs::read(&path).is_ok_and(|there| there == bytes)
     };
     let stem = obj.file_stem().map_or_else(|| "mesh".into(), |s| s.to_string_lossy().into_owned());
-    let name = if is_free(wanted) || wanted.starts_with(&stem) { wanted.to_owned() } else { format!("{stem}_{wanted}") };
+    let name =
+        if is_free(wanted) || wanted.starts_with(&stem) { wanted.to_owned() } else { format!("{stem}_{wanted}") };
     write_atomically(&obj.with_file_name(&name), |file| file.write_all(bytes))?;
     Ok(name)
 }
 
 /// Whether the output lies in a folder, by its real path.
 fn is_same_folder(folder: &Path, obj: &Path) -> bool {
-    let real = |path: &Path| std::fs::canonicalize(if path.as_os_str().is_empty() { Path::new(".") } else { path }).ok();
+    let real =
+        |path: &Path| std::fs::canonicalize(if path.as_os_str().is_empty() { Path::new(".") } else { path }).ok();
     let target = obj.parent().and_then(real);
     target.is_some() && real(folder) == target
 }

@@ -6,7 +6,7 @@
 //! materials, textures and named attributes go along as far as the format can hold them. A file written in the format it was
 //! read from is the same file with other numbers: an OBJ line by line, a PLY property by property.
 //!
-//! Normals are computed anew from the warped triangles, with hard edges where the input had them ([`normals`]).
+//! Normals are computed anew from the warped triangles, with hard edges where the input had them.
 //!
 //! # What is not
 //!
@@ -64,7 +64,12 @@ pub fn mesh(boundary: &Boundary, positions: &[DVec3], colours: Option<&[[f32; 3]
         Some(Kind::Ply) => ply::write(&surface),
         Some(Kind::Stl) => stl::write(&surface, path)?,
         Some(Kind::Off) => off::write(&surface),
-        None => return Err(Error::in_file(path, "meshes are written as .glb, .obj, .ply, .stl or .off; choose one of these")),
+        None => {
+            return Err(Error::in_file(
+                path,
+                "meshes are written as .glb, .obj, .ply, .stl or .off; choose one of these",
+            ));
+        }
     };
     write_atomically(path, |file| file.write_all(&bytes))
 }
@@ -112,7 +117,10 @@ impl Surface<'_> {
     fn check_single(&self, path: &Path) -> Result<()> {
         let too_far = |p: &DVec3| p.abs().max_element() > f64::from(f32::MAX);
         match self.positions.iter().position(too_far) {
-            Some(vertex) => Err(Error::in_file(path, format!("vertex {vertex} is further out than the format can say; write .obj instead"))),
+            Some(vertex) => Err(Error::in_file(
+                path,
+                format!("vertex {vertex} is further out than the format can say; write .obj instead"),
+            )),
             None => Ok(()),
         }
     }
@@ -129,7 +137,9 @@ impl Surface<'_> {
     fn polygons(&self) -> impl Iterator<Item = &[u32]> {
         let polygons = &self.boundary.source.polygons;
         let triangles: &[[u32; 3]] = if polygons.len() == 0 { &self.boundary.triangles } else { &[] };
-        (0..polygons.len()).map(|i| &polygons.corners[polygons.range(i)]).chain(triangles.iter().map(<[u32; 3]>::as_slice))
+        (0..polygons.len())
+            .map(|i| &polygons.corners[polygons.range(i)])
+            .chain(triangles.iter().map(<[u32; 3]>::as_slice))
     }
 }
 

@@ -21,7 +21,8 @@ use crate::boundary::source::{NONE, Original};
 /// boxes and cylinders' rims more; common modellers propose 30 to 60.
 const CREASE_DEGREES: f64 = 40.0;
 
-/// Facets around one vertex beyond which creases are not sought: the search is quadratic.
+/// Facets around one vertex beyond which creases are not sought and all is smooth: the search is quadratic. Even finely
+/// tessellated caps seldom have more.
 const MAX_FACETS: usize = 64;
 
 /// The smoothing classes of a boundary.
@@ -50,8 +51,11 @@ impl Smoothing {
         let mut known: HashMap<(u32, Option<[u32; 3]>), u32> = HashMap::new();
         let mut class = |triangle: usize, corner: usize| {
             let vertex = boundary.triangles[triangle][corner];
-            let normal = match source.triangle_corners.get(triangle).map(|c| source.corner_normals[c[corner] as usize]) {
-                Some(index) if index != NONE => Some((source.normals[index as usize] + Vec3::ZERO).to_array().map(f32::to_bits)),
+            let normal = match source.triangle_corners.get(triangle).map(|c| source.corner_normals[c[corner] as usize])
+            {
+                Some(index) if index != NONE => {
+                    Some((source.normals[index as usize] + Vec3::ZERO).to_array().map(f32::to_bits))
+                }
                 _ => None,
             };
             let next = known.len() as u32;
@@ -76,16 +80,16 @@ impl Smoothing {
         for corners in &around {
             let mut group: Vec<usize> = (0..corners.len()).collect();
             for i in 0..corners.len() {
-                let is_smooth = |j: usize| facets[corners[i].0 as usize].dot(facets[corners[j].0 as usize]) >= least_cosine;
-                let joined = (0..i).filter(|&j| corners.len() > MAX_FACETS || is_smooth(j));
-                for j in joined.collect::<Vec<_>>() {
+                let is_crowd = corners.len() > MAX_FACETS;
+                let cosine = |j: usize| facets[corners[i].0 as usize].dot(facets[corners[j].0 as usize]);
+                for j in 0..if is_crowd { i.min(1) } else { i } {
                     let (from, to) = (group[i].max(group[j]), group[i].min(group[j]));
-                    if from != to {
-                        group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+                    if from == to || !(is_crowd || cosine(j) >= least_cosine) {
+                        continue;
                     }
-                    if corners.len() > MAX_FACETS {
-                        break;
-                    }
+                    // Only corners up to this one have been joined so far; in a crowd, none to this one.
+                    let joined = if is_crowd { &mut group[i..=i] } else { &mut group[..=i] };
+                    joined.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
                 }
             }
             for (&(triangle, corner), &leader) in corners.iter().zip(&group) {

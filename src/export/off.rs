@@ -21,7 +21,12 @@ fn again(surface: &Surface, original: &OffText) -> Vec<u8> {
     let mut seen = 0;
     for line in original.text.lines() {
         let words = off_content(line);
-        let vertex = if words.is_empty() { None } else { seen += 1; (seen - 1usize).checked_sub(original.before) };
+        let vertex = if words.is_empty() {
+            None
+        } else {
+            seen += 1;
+            (seen - 1usize).checked_sub(original.before)
+        };
         let Some(vertex) = vertex.filter(|&v| v < original.vertices) else {
             out.push_str(line);
             out.push('\n');

@@ -51,7 +51,9 @@ fn anew(surface: &Surface) -> PlyTable {
     let boundary = surface.boundary;
     let is_single = surface.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
     let scalar = if is_single { Scalar::F32 } else { Scalar::F64 };
-    let axis = |(name, axis): (&str, usize)| Property::column(name, scalar, surface.positions.iter().map(|p| p[axis]).collect());
+    let axis = |(name, axis): (&str, usize)| {
+        Property::column(name, scalar, surface.positions.iter().map(|p| p[axis]).collect())
+    };
     let mut properties: Vec<Property> = [("x", 0), ("y", 1), ("z", 2)].map(axis).into();
     if !boundary.source.corner_normals.is_empty() {
         let columns = ["nx", "ny", "nz"].into_iter().zip(normals(surface));
@@ -68,7 +70,13 @@ fn anew(surface: &Surface) -> PlyTable {
     let vertex = Element { name: "vertex".into(), count: surface.positions.len(), properties };
     let polygons: Vec<&[u32]> = surface.polygons().collect();
     let length = if polygons.iter().any(|p| p.len() > 127) { Scalar::U32 } else { Scalar::U8 };
-    let mut indices = Property { name: "vertex_indices".into(), scalar: Scalar::I32, length: Some(length), values: Vec::new(), starts: vec![0] };
+    let mut indices = Property {
+        name: "vertex_indices".into(),
+        scalar: Scalar::I32,
+        length: Some(length),
+        values: Vec::new(),
+        starts: vec![0],
+    };
     for polygon in &polygons {
         indices.values.extend(polygon.iter().map(|&v| f64::from(v)));
         indices.starts.push(indices.values.len());

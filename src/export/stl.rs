@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::normals::unit_normal;
 use super::{Surface, number};
-use crate::boundary::source::Original;
 use crate::boundary::StlKind;
+use crate::boundary::source::Original;
 use crate::error::{Error, Result};
 
 /// The mesh as an STL.
@@ -21,7 +21,8 @@ pub(super) fn write(surface: &Surface, path: &Path) -> Result<Vec<u8>> {
 fn binary(surface: &Surface, header: &[u8], extras: &[[u8; 2]], path: &Path) -> Result<Vec<u8>> {
     surface.check_single(path)?;
     let triangles = &surface.boundary.triangles;
-    let count = u32::try_from(triangles.len()).map_err(|_| Error::in_file(path, "it has more triangles than an STL can; write .ply instead"))?;
+    let count = u32::try_from(triangles.len())
+        .map_err(|_| Error::in_file(path, "it has more triangles than an STL can; write .ply instead"))?;
     let mut out = header.to_vec();
     out.resize(80, 0);
     out.extend(count.to_le_bytes());

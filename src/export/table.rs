@@ -59,14 +59,19 @@ impl Table {
         };
         let plain = [Part { object: NONE, material: NONE, extensions: None }];
         let parts: &[Part] = if source.parts.is_empty() { &plain } else { &source.parts };
-        let mut slices: Vec<Slice> = parts.iter().map(|part| Slice { part: part.clone(), triangles: Vec::new(), window: 0..0 }).collect();
+        let mut slices: Vec<Slice> =
+            parts.iter().map(|part| Slice { part: part.clone(), triangles: Vec::new(), window: 0..0 }).collect();
         let part_of_triangle = parts_of_triangles(boundary);
         for (index, triangle) in boundary.triangles.iter().enumerate() {
             let uv = |corner: usize| match source.triangle_corners.get(index) {
                 Some(corners) if !source.corner_uvs.is_empty() => source.corner_uvs[corners[corner] as usize],
                 _ => NONE,
             };
-            let row = |corner: usize| Row { vertex: triangle[corner], uv: uv(corner), class: smoothing.classes[index][corner] };
+            let row = |corner: usize| Row {
+                vertex: triangle[corner],
+                uv: uv(corner),
+                class: smoothing.classes[index][corner],
+            };
             let part = part_of_triangle.get(index).copied().unwrap_or(0);
             slices[part as usize].triangles.push([row_of(row(0)), row_of(row(1)), row_of(row(2))]);
         }
@@ -78,8 +83,15 @@ impl Table {
 
     /// Whether each object has rows of its own, so that it can be a mesh of its own.
     pub fn is_separable(&self) -> bool {
-        self.parts.iter().zip(self.parts.iter().skip(1)).all(|(a, b)| a.window == b.window || a.window.end <= b.window.start)
-            && self.parts.iter().zip(self.parts.iter().skip(1)).all(|(a, b)| a.part.object == b.part.object || a.window != b.window)
+        self.parts
+            .iter()
+            .zip(self.parts.iter().skip(1))
+            .all(|(a, b)| a.window == b.window || a.window.end <= b.window.start)
+            && self
+                .parts
+                .iter()
+                .zip(self.parts.iter().skip(1))
+                .all(|(a, b)| a.part.object == b.part.object || a.window != b.window)
     }
 
     /// Gives each run of parts of one object that share rows its own window, if these come in order; else all rows to all.

@@ -62,7 +62,13 @@ impl<'a> Buffers<'a> {
     /// None loaded yet.
     pub fn new(path: &Path, document: &'a Document, binary: Option<&'a [u8]>, file_size: usize) -> Self {
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        Self { folder, document, binary, loaded: HashMap::new(), budget: FREE_NUMBERS.saturating_add(file_size.saturating_mul(16)) }
+        Self {
+            folder,
+            document,
+            binary,
+            loaded: HashMap::new(),
+            budget: FREE_NUMBERS.saturating_add(file_size.saturating_mul(16)),
+        }
     }
 
     /// The bytes of a data URI or of a file.
@@ -74,7 +80,9 @@ impl<'a> Buffers<'a> {
             data_uri(data).ok_or("a data URI in it is malformed; export the scene again")?
         } else {
             let missing = || format!("the file {uri} it refers to is missing; put it beside, or export as GLB");
-            let file = mtl::find(&self.folder, &percent_decoded(uri)).or_else(|| mtl::find(&self.folder, uri)).ok_or_else(missing)?;
+            let file = mtl::find(&self.folder, &percent_decoded(uri))
+                .or_else(|| mtl::find(&self.folder, uri))
+                .ok_or_else(missing)?;
             format::load(&file).map_err(|error| error.to_string())?
         };
         self.budget = self.budget.saturating_add(bytes.len().saturating_mul(16));
@@ -83,30 +91,45 @@ impl<'a> Buffers<'a> {
         Ok(bytes)
     }
 
-    /// Accounts for bytes that are copied out of the buffers.
+    /// Accounts for numbers, or bytes, that are made of the buffers' content otherwise.
     pub fn spend(&mut self, bytes: usize) -> Result<(), String> {
-        self.budget = self.budget.checked_sub(bytes).ok_or("its images are many times larger than the file")?;
+        self.budget = self.budget.checked_sub(bytes).ok_or("it unfolds to many times its own size, more than can be real; reduce the instances or export the scene again")?;
         Ok(())
     }
 
     /// The bytes of a buffer view.
     pub fn view(&mut self, index: usize) -> Result<Bytes<'a>, String> {
         let document = self.document;
-        let view = document.buffer_views.get(index).ok_or_else(|| no_such("buffer view", index, document.buffer_views.len()))?;
-        let buffer = document.buffers.get(view.buffer).ok_or_else(|| no_such("buffer", view.buffer, document.buffers.len()))?;
+        let view = document
+            .buffer_views
+            .get(index)
+            .ok_or_else(|| no_such("buffer view", index, document.buffer_views.len()))?;
+        let buffer =
+            document.buffers.get(view.buffer).ok_or_else(|| no_such("buffer", view.buffer, document.buffers.len()))?;
         let range = view.byte_offset..view.byte_offset.saturating_add(view.byte_length);
         let short = |length: usize| {
-            format!("buffer view {index} ends at byte {}, but buffer {} has {length}; get the whole file again", range.end, view.buffer)
+            format!(
+                "buffer view {index} ends at byte {}, but buffer {} has {length}; get the whole file again",
+                range.end, view.buffer
+            )
         };
         match &buffer.uri {
             None => {
-                let bytes = self.binary.filter(|_| view.buffer == 0).ok_or_else(|| format!("buffer {} has no content; export the scene again", view.buffer))?;
+                let bytes = self
+                    .binary
+                    .filter(|_| view.buffer == 0)
+                    .ok_or_else(|| format!("buffer {} has no content; export the scene again", view.buffer))?;
                 bytes.get(range.clone()).map(Bytes::Own).ok_or_else(|| short(bytes.len()))
             }
             Some(uri) => {
                 let bytes = self.resource(uri)?;
                 if bytes.len() < buffer.byte_length {
-                    return Err(format!("buffer {} should have {} bytes and has {}; get the whole file again", view.buffer, buffer.byte_length, bytes.len()));
+                    return Err(format!(
+                        "buffer {} should have {} bytes and has {}; get the whole file again",
+                        view.buffer,
+                        buffer.byte_length,
+                        bytes.len()
+                    ));
                 }
                 match bytes.get(range.clone()) {
                     Some(_) => Ok(Bytes::Other(bytes, range)),
@@ -125,7 +148,8 @@ impl<'a> Buffers<'a> {
     /// The numbers of an accessor, sparse ones filled in.
     pub fn numbers(&mut self, index: usize) -> Result<Numbers, String> {
         let document = self.document;
-        let accessor = document.accessors.get(index).ok_or_else(|| no_such("accessor", index, document.accessors.len()))?;
+        let accessor =
+            document.accessors.get(index).ok_or_else(|| no_such("accessor", index, document.accessors.len()))?;
         let width = match accessor.shape.as_str() {
             "SCALAR" => 1,
             "VEC2" => 2,
@@ -144,7 +168,10 @@ impl<'a> Buffers<'a> {
             None => vec![0.0; total],
         };
         if let Some(sparse) = &accessor.sparse {
-            self.budget = self.budget.checked_sub(sparse.count.saturating_mul(width)).ok_or("its sparse accessors claim more than can be real")?;
+            self.budget = self
+                .budget
+                .checked_sub(sparse.count.saturating_mul(width))
+                .ok_or("its sparse accessors claim more than can be real")?;
             let part = |part: &SparsePart, component_type: u32, normalized: bool| Accessor {
                 byte_offset: part.byte_offset,
                 component_type,
@@ -159,7 +186,10 @@ impl<'a> Buffers<'a> {
             for (&at, replacement) in indices.iter().zip(replacements.chunks_exact(width)) {
                 let at = at as usize;
                 let slot = at.checked_mul(width).and_then(|start| values.get_mut(start..start + width));
-                slot.ok_or_else(|| format!("accessor {index} replaces element {at} of {}; export the scene again", accessor.count))?.copy_from_slice(replacement);
+                slot.ok_or_else(|| {
+                    format!("accessor {index} replaces element {at} of {}; export the scene again", accessor.count)
+                })?
+                .copy_from_slice(replacement);
             }
         }
         Ok(Numbers { width, values })
@@ -175,17 +205,25 @@ impl<'a> Buffers<'a> {
             5123 => (2, 65535.0, |b| f64::from(u16::from_le_bytes([b[0], b[1]]))),
             5125 => (4, f64::from(u32::MAX), |b| f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
             5126 => (4, 1.0, |b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
-            other => return Err(format!("accessor {index} has the unknown component type {other}; export the scene again")),
+            other => {
+                return Err(format!("accessor {index} has the unknown component type {other}; export the scene again"));
+            }
         };
         let bytes = self.view(view)?;
         let element = size * width;
-        let stride = self.document.buffer_views[view].byte_stride.filter(|&s| s >= element && accessor.count > 0).unwrap_or(element);
+        let stride = self.document.buffer_views[view]
+            .byte_stride
+            .filter(|&s| s >= element && accessor.count > 0)
+            .unwrap_or(element);
         let needed = match accessor.count {
             0 => 0,
             count => (count - 1).saturating_mul(stride).saturating_add(element).saturating_add(accessor.byte_offset),
         };
         if needed > bytes.len() {
-            return Err(format!("accessor {index} needs {needed} bytes of buffer view {view}, which has {}; get the whole file again", bytes.len()));
+            return Err(format!(
+                "accessor {index} needs {needed} bytes of buffer view {view}, which has {}; get the whole file again",
+                bytes.len()
+            ));
         }
         let divisor = if accessor.normalized { largest } else { 1.0 };
         let mut values = Vec::with_capacity(accessor.count * width);
@@ -208,7 +246,8 @@ pub(super) fn no_such(what: &str, index: usize, count: usize) -> String {
 fn data_uri(data: &str) -> Option<Vec<u8>> {
     let (head, body) = data.split_once(',')?;
     if head.ends_with(";base64") {
-        let lenient = base64::engine::GeneralPurposeConfig::new().with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent);
+        let lenient = base64::engine::GeneralPurposeConfig::new()
+            .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent);
         let engine = base64::engine::GeneralPurpose::new(&base64::alphabet::STANDARD, lenient);
         engine.decode(percent_decoded(body).trim()).ok()
     } else {
@@ -222,7 +261,10 @@ pub(super) fn percent_decoded(uri: &str) -> String {
     let mut out = Vec::with_capacity(bytes.len());
     let mut at = 0;
     while at < bytes.len() {
-        let hex = bytes.get(at + 1..at + 3).and_then(|h| std::str::from_utf8(h).ok()).and_then(|h| u8::from_str_radix(h, 16).ok());
+        let hex = bytes
+            .get(at + 1..at + 3)
+            .and_then(|h| std::str::from_utf8(h).ok())
+            .and_then(|h| u8::from_str_radix(h, 16).ok());
         match (bytes[at], hex) {
             (b'%', Some(byte)) => {
                 out.push(byte);

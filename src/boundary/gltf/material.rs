@@ -10,10 +10,20 @@ use crate::boundary::mtl;
 use crate::boundary::source::{Image, Materials};
 
 /// Takes the materials of a document.
-pub(super) fn read<'a>(root: &Value, document: &'a Document, buffers: &mut Buffers<'a>, warnings: &mut Vec<String>) -> Materials {
+pub(super) fn read<'a>(
+    root: &Value,
+    document: &'a Document,
+    buffers: &mut Buffers<'a>,
+    warnings: &mut Vec<String>,
+) -> Materials {
     let array = |key: &str| root.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
     let strings = |key: &str| array(key).iter().filter_map(|v| v.as_str().map(str::to_owned)).collect::<Vec<_>>();
-    let mut result = Materials { materials: array("materials"), textures: array("textures"), samplers: array("samplers"), ..Materials::default() };
+    let mut result = Materials {
+        materials: array("materials"),
+        textures: array("textures"),
+        samplers: array("samplers"),
+        ..Materials::default()
+    };
     for index in 0..document.images.len() {
         result.images.push(image(index, document, buffers, warnings));
     }
@@ -56,7 +66,10 @@ fn image<'a>(index: usize, document: &'a Document, buffers: &mut Buffers<'a>, wa
     };
     match bytes {
         Ok(bytes) => {
-            let mime = mtl::mime_of(&bytes).map(str::to_owned).or_else(|| file.mime_type.clone()).unwrap_or_else(|| "image/png".into());
+            let mime = mtl::mime_of(&bytes)
+                .map(str::to_owned)
+                .or_else(|| file.mime_type.clone())
+                .unwrap_or_else(|| "image/png".into());
             Image { name, mime, bytes }
         }
         Err(why) => {

@@ -146,11 +146,17 @@ struct ImageFile {
 pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary> {
     let (text, binary) = container(bytes).map_err(|sentence| Error::in_file(path, sentence))?;
     let text = super::format::text(text);
-    let malformed = |why: serde_json::Error| Error::in_file(path, format!("its JSON is malformed ({why}); export the scene again"));
+    let malformed =
+        |why: serde_json::Error| Error::in_file(path, format!("its JSON is malformed ({why}); export the scene again"));
     let root: Value = serde_json::from_str(text.trim_end_matches(['\0', ' ', '\n', '\r', '\t'])).map_err(malformed)?;
     let document = Document::deserialize(&root).map_err(malformed)?;
-    if let Some(packed) = PACKED.iter().find(|&&name| document.extensions_required.iter().any(|required| required == name)) {
-        return Err(Error::in_file(path, format!("its geometry is packed with {packed}; export it without mesh compression")));
+    if let Some(packed) =
+        PACKED.iter().find(|&&name| document.extensions_required.iter().any(|required| required == name))
+    {
+        return Err(Error::in_file(
+            path,
+            format!("its geometry is packed with {packed}; export it without mesh compression"),
+        ));
     }
     let mut buffers = Buffers::new(path, &document, binary, bytes.len());
     let mut boundary = scene::read(&document, &mut buffers).map_err(|sentence| Error::in_file(path, sentence))?;
@@ -158,6 +164,9 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary> {
     let materials = boundary.source.materials.materials.len();
     for part in &mut boundary.source.parts {
         part.material = if (part.material as usize) < materials { part.material } else { super::source::NONE };
+    }
+    if boundary.regions.is_none() {
+        boundary.regions_from_parts();
     }
     Ok(boundary)
 }
@@ -178,7 +187,9 @@ fn container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     while let (Some(length), Some(kind)) = (word(at), word(at + 4)) {
         let start = at + 8;
         let chunk = start.checked_add(length as usize).and_then(|end| bytes.get(start..end));
-        let chunk = chunk.ok_or_else(|| format!("a chunk of {length} bytes is cut off after {}; get the whole file again", bytes.len() - start))?;
+        let chunk = chunk.ok_or_else(|| {
+            format!("a chunk of {length} bytes is cut off after {}; get the whole file again", bytes.len() - start)
+        })?;
         match kind {
             0x4E4F_534A => chunks[0] = chunks[0].or(Some(chunk)),
             0x004E_4942 => chunks[1] = chunks[1].or(Some(chunk)),

@@ -29,7 +29,14 @@ pub(super) struct Gatherer {
 
 impl Gatherer {
     /// Adds what hangs at one node.
-    pub fn node(&mut self, node: &Node, mesh: &Mesh, world: DMat4, joints: &[Joint], buffers: &mut Buffers) -> Result<(), String> {
+    pub fn node(
+        &mut self,
+        node: &Node,
+        mesh: &Mesh,
+        world: DMat4,
+        joints: &[Joint],
+        buffers: &mut Buffers,
+    ) -> Result<(), String> {
         let name = node.name.clone().or_else(|| mesh.name.clone()).unwrap_or_default();
         self.boundary.source.objects.push(Object { name, extras: node.extras.clone() });
         let object = self.boundary.source.objects.len() as u32 - 1;
@@ -43,7 +50,8 @@ impl Gatherer {
             }
             let in_primitive = |sentence: String| format!("primitive {index}: {sentence}");
             let targets = primitive.targets.iter().flatten();
-            let key: Vec<_> = primitive.attributes.iter().chain(targets).map(|(name, &accessor)| (name.as_str(), accessor)).collect();
+            let key: Vec<_> =
+                primitive.attributes.iter().chain(targets).map(|(name, &accessor)| (name.as_str(), accessor)).collect();
             let first = match shared.get(&key) {
                 Some(&first) => first,
                 None => {
@@ -52,7 +60,11 @@ impl Gatherer {
                     first
                 }
             };
-            let part = Part { object, material: primitive.material.map_or(NONE, |m| m as u32), extensions: variants(primitive) };
+            let part = Part {
+                object,
+                material: primitive.material.map_or(NONE, |m| m as u32),
+                extensions: variants(primitive),
+            };
             let is_mirrored = joints.is_empty() && world.determinant() < 0.0;
             self.triangles(primitive, mode, first, part, is_mirrored, buffers).map_err(in_primitive)?;
         }
@@ -60,7 +72,14 @@ impl Gatherer {
     }
 
     /// Appends the vertices of a primitive; the index of the first.
-    fn vertices(&mut self, primitive: &Primitive, weights: &[f64], world: DMat4, joints: &[Joint], buffers: &mut Buffers) -> Result<u32, String> {
+    fn vertices(
+        &mut self,
+        primitive: &Primitive,
+        weights: &[f64],
+        world: DMat4,
+        joints: &[Joint],
+        buffers: &mut Buffers,
+    ) -> Result<u32, String> {
         let first = self.boundary.positions.len();
         let position = *primitive.attributes.get("POSITION").ok_or("it has no POSITION; export the mesh again")?;
         let mut places = triples(buffers.numbers(position)?)?;
@@ -76,7 +95,10 @@ impl Gatherer {
             let own: &[(usize, f64)] = influences.get(vertex).map_or(&[], Vec::as_slice);
             let total: f64 = own.iter().map(|(_, weight)| weight).sum();
             let at_rest = match total {
-                _ if total > 0.0 => own.iter().map(|&(joint, weight)| weight / total * moved(&joints[joint].world_from_mesh, place)).sum(),
+                _ if total > 0.0 => own
+                    .iter()
+                    .map(|&(joint, weight)| weight / total * moved(&joints[joint].world_from_mesh, place))
+                    .sum(),
                 _ if is_identity => place,
                 _ => moved(&world, place),
             };
@@ -102,8 +124,16 @@ impl Gatherer {
     }
 
     /// Keeps one attribute of a primitive whose vertices start at `first`.
-    fn attribute(&mut self, name: &str, accessor: usize, first: usize, count: usize, buffers: &mut Buffers) -> Result<(), String> {
-        let is_kept = name == "NORMAL" || name.starts_with("TEXCOORD_") || name.starts_with("COLOR_") || name.starts_with('_');
+    fn attribute(
+        &mut self,
+        name: &str,
+        accessor: usize,
+        first: usize,
+        count: usize,
+        buffers: &mut Buffers,
+    ) -> Result<(), String> {
+        let is_kept =
+            name == "NORMAL" || name.starts_with("TEXCOORD_") || name.starts_with("COLOR_") || name.starts_with('_');
         if !is_kept {
             return Ok(());
         }
@@ -115,21 +145,32 @@ impl Gatherer {
         match (name, numbers.width) {
             ("NORMAL", 3) => {
                 self.has_normals = true;
-                let triples = numbers.values.chunks_exact(3).map(|n| Some(Vec3::new(n[0] as f32, n[1] as f32, n[2] as f32)));
+                let triples =
+                    numbers.values.chunks_exact(3).map(|n| Some(Vec3::new(n[0] as f32, n[1] as f32, n[2] as f32)));
                 self.normals.splice(first.., triples);
             }
             ("TEXCOORD_0", 2) => {
                 self.has_uvs = true;
-                self.uvs.splice(first.., numbers.values.chunks_exact(2).map(|uv| Some(Vec2::new(uv[0] as f32, uv[1] as f32))));
+                self.uvs.splice(
+                    first..,
+                    numbers.values.chunks_exact(2).map(|uv| Some(Vec2::new(uv[0] as f32, uv[1] as f32))),
+                );
             }
-            ("NORMAL" | "TEXCOORD_0", _) => return Err(format!("{name} has {} numbers for each vertex; export the mesh again", numbers.width)),
+            ("NORMAL" | "TEXCOORD_0", _) => {
+                return Err(format!("{name} has {} numbers for each vertex; export the mesh again", numbers.width));
+            }
             (_, 1) => self.channel(name.into(), 0.0, first, numbers.values.iter().map(single)),
             (_, width @ 2..=4) => {
                 let is_colour = name.starts_with("COLOR_");
                 let letters = if is_colour { ["r", "g", "b", "a"] } else { ["x", "y", "z", "w"] };
                 for (i, letter) in letters.iter().enumerate().take(width) {
                     let default = if is_colour { 1.0 } else { 0.0 };
-                    self.channel(format!("{name}.{letter}"), default, first, numbers.values.iter().skip(i).step_by(width).map(single));
+                    self.channel(
+                        format!("{name}.{letter}"),
+                        default,
+                        first,
+                        numbers.values.iter().skip(i).step_by(width).map(single),
+                    );
                 }
             }
             _ => self.boundary.warnings.push(format!("the attribute {name} has matrices, which are left out")),
@@ -150,24 +191,40 @@ impl Gatherer {
     }
 
     /// Appends the triangles of a primitive whose vertices start at `first`.
-    fn triangles(&mut self, primitive: &Primitive, mode: u32, first: u32, part: Part, is_mirrored: bool, buffers: &mut Buffers) -> Result<(), String> {
+    fn triangles(
+        &mut self,
+        primitive: &Primitive,
+        mode: u32,
+        first: u32,
+        part: Part,
+        is_mirrored: bool,
+        buffers: &mut Buffers,
+    ) -> Result<(), String> {
         let position = primitive.attributes.get("POSITION").copied().unwrap_or_default();
         let count = buffers.count(position)?;
+        buffers.spend(3 * count)?;
         let indices: Vec<u32> = match primitive.indices {
             None => (0..count as u32).collect(),
             Some(accessor) => {
                 let numbers = buffers.numbers(accessor)?.values;
                 if let Some((at, index)) = numbers.iter().enumerate().find(|&(_, &i)| !(i >= 0.0 && i < count as f64)) {
-                    return Err(format!("index {at} refers to vertex {index}, but there are {count}; export the mesh again"));
+                    return Err(format!(
+                        "index {at} refers to vertex {index}, but there are {count}; export the mesh again"
+                    ));
                 }
                 numbers.into_iter().map(|i| i as u32).collect()
             }
         };
         let corners: Vec<[u32; 3]> = match mode {
-            5 => indices.windows(3).enumerate().map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }).collect(),
+            5 => indices
+                .windows(3)
+                .enumerate()
+                .map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] })
+                .collect(),
             6 => indices.windows(2).skip(1).map(|t| [indices[0], t[0], t[1]]).collect(),
             _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         };
+        buffers.spend(9 * corners.len())?;
         let source = &mut self.boundary.source;
         source.parts.push(part);
         for [a, b, c] in corners {
@@ -192,17 +249,18 @@ impl Gatherer {
         let source = &mut boundary.source;
         let corners = &source.polygons.corners;
         if self.has_uvs {
-            source.corner_uvs = corners.iter().map(|&v| if self.uvs[v as usize].is_some() { v } else { NONE }).collect();
+            source.corner_uvs =
+                corners.iter().map(|&v| if self.uvs[v as usize].is_some() { v } else { NONE }).collect();
             source.uvs = self.uvs.iter().map(|uv| uv.unwrap_or_default()).collect();
         }
         if self.has_normals {
-            source.corner_normals = corners.iter().map(|&v| if self.normals[v as usize].is_some() { v } else { NONE }).collect();
+            source.corner_normals =
+                corners.iter().map(|&v| if self.normals[v as usize].is_some() { v } else { NONE }).collect();
             source.normals = self.normals.iter().map(|n| n.unwrap_or_default()).collect();
         }
         if self.left_out > 0 {
             boundary.warnings.push(format!("{} primitives of points or lines are left out", self.left_out));
         }
-        boundary.regions_from_objects();
         if self.bone_names.len() > 1 {
             boundary.regions = Some(Regions { names: self.bone_names, of_vertex: self.bones });
         }
@@ -218,19 +276,30 @@ fn triples(numbers: Numbers) -> Result<Vec<DVec3>, String> {
 }
 
 /// `[vertices]` joints and their weights; empty without a skin.
-fn influences(primitive: &Primitive, count: usize, joints: &[Joint], buffers: &mut Buffers) -> Result<Vec<Vec<(usize, f64)>>, String> {
+fn influences(
+    primitive: &Primitive,
+    count: usize,
+    joints: &[Joint],
+    buffers: &mut Buffers,
+) -> Result<Vec<Vec<(usize, f64)>>, String> {
     let mut result = if joints.is_empty() { Vec::new() } else { vec![Vec::new(); count] };
     for set in 0.. {
-        let accessors = (primitive.attributes.get(&format!("JOINTS_{set}")), primitive.attributes.get(&format!("WEIGHTS_{set}")));
+        let accessors =
+            (primitive.attributes.get(&format!("JOINTS_{set}")), primitive.attributes.get(&format!("WEIGHTS_{set}")));
         let (Some(&of_joints), Some(&of_weights), false) = (accessors.0, accessors.1, joints.is_empty()) else { break };
         let (indices, weights) = (buffers.numbers(of_joints)?, buffers.numbers(of_weights)?);
         if indices.values.len() != weights.values.len() || indices.count() != count {
             return Err(format!("JOINTS_{set} and WEIGHTS_{set} differ in length; export the mesh again"));
         }
-        for (at, (&joint, &weight)) in indices.values.iter().zip(&weights.values).enumerate().filter(|(_, (_, weight))| **weight > 0.0) {
+        for (at, (&joint, &weight)) in
+            indices.values.iter().zip(&weights.values).enumerate().filter(|(_, (_, weight))| **weight > 0.0)
+        {
             let vertex = at / indices.width;
             if joint as usize >= joints.len() {
-                return Err(format!("vertex {vertex} hangs at joint {joint}, but the skin has {}; export the mesh again", joints.len()));
+                return Err(format!(
+                    "vertex {vertex} hangs at joint {joint}, but the skin has {}; export the mesh again",
+                    joints.len()
+                ));
             }
             result[vertex].push((joint as usize, weight));
         }

@@ -23,7 +23,9 @@ pub(super) fn read<'a>(document: &'a Document, buffers: &mut Buffers<'a>) -> Res
         let Some(mesh) = node.mesh else { continue };
         let mesh = document.meshes.get(mesh).ok_or_else(|| no_such("mesh", mesh, document.meshes.len()))?;
         let joints = joints(document, node, &world, buffers)?;
-        gatherer.node(node, mesh, world[index], &joints, buffers).map_err(|sentence| format!("node {index}: {sentence}"))?;
+        gatherer
+            .node(node, mesh, world[index], &joints, buffers)
+            .map_err(|sentence| format!("node {index}: {sentence}"))?;
     }
     Ok(gatherer.finish())
 }
@@ -75,8 +77,13 @@ fn local(node: &Node) -> DMat4 {
     if let Some(matrix) = &node.matrix {
         return DMat4::from_cols_array(matrix);
     }
-    let rotation = node.rotation.map(DQuat::from_array).filter(|q| q.length_squared() > 0.0).map_or(DQuat::IDENTITY, DQuat::normalize);
-    let (scale, translation) = (node.scale.map_or(DVec3::ONE, DVec3::from_array), node.translation.map_or(DVec3::ZERO, DVec3::from_array));
+    let rotation = node
+        .rotation
+        .map(DQuat::from_array)
+        .filter(|q| q.length_squared() > 0.0)
+        .map_or(DQuat::IDENTITY, DQuat::normalize);
+    let (scale, translation) =
+        (node.scale.map_or(DVec3::ONE, DVec3::from_array), node.translation.map_or(DVec3::ZERO, DVec3::from_array));
     DMat4::from_scale_rotation_translation(scale, rotation, translation)
 }
 
@@ -93,11 +100,16 @@ pub(super) struct Joint {
 fn joints(document: &Document, node: &Node, world: &[DMat4], buffers: &mut Buffers) -> Result<Vec<Joint>, String> {
     let Some(index) = node.skin else { return Ok(Vec::new()) };
     let skin = document.skins.get(index).ok_or_else(|| no_such("skin", index, document.skins.len()))?;
+    buffers.spend(16 * skin.joints.len())?;
     let inverse_bind = skin.inverse_bind_matrices.map(|accessor| buffers.numbers(accessor)).transpose()?;
     if inverse_bind.as_ref().is_some_and(|m| m.width != 16 || m.count() < skin.joints.len()) {
         return Err(format!("skin {index} has fewer inverse bind matrices than joints; export the scene again"));
     }
-    let matrix = |joint: usize| inverse_bind.as_ref().map_or(DMat4::IDENTITY, |m| DMat4::from_cols_slice(&m.values[16 * joint..16 * joint + 16]));
+    let matrix = |joint: usize| {
+        inverse_bind
+            .as_ref()
+            .map_or(DMat4::IDENTITY, |m| DMat4::from_cols_slice(&m.values[16 * joint..16 * joint + 16]))
+    };
     let joint = |(i, &node): (usize, &usize)| {
         let world = world.get(node).ok_or_else(|| no_such("node", node, world.len()))?;
         Ok(Joint { world_from_mesh: *world * matrix(i), name: document.nodes[node].name.clone().unwrap_or_default() })
