@@ -1,5 +1,10 @@
 //! Contract of `boundary`: every format gives the vertices and triangles of the file, in its order, in world positions, with
 //! the attributes, texture coordinates and regions it names.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot be set up has failed; one that is skipped says so"
+)]
 
 use std::path::{Path, PathBuf};
 
@@ -215,6 +220,14 @@ l 1 2\nf 1 2
     assert_eq!(mesh.warnings.len(), 2, "{:?}", mesh.warnings);
     let colours = mesh.base_colours().unwrap();
     assert!((colours[3][0] - 0.214).abs() < 1e-3, "sRGB 0.5 is linear 0.214");
+}
+
+#[test]
+fn materials_name_the_regions_where_objects_do_not() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl skin\nf 1 2 3\nusemtl nail\nf 1 2 4\n";
+    let regions = read_bytes("a.obj", text.as_bytes()).regions.unwrap();
+    assert_eq!((regions.names, regions.of_vertex), (vec!["skin".to_owned(), "nail".to_owned()], vec![0, 0, 0, 1]));
+    assert!(read_bytes("a.obj", text.replace("nail", "skin").as_bytes()).regions.is_none());
 }
 
 #[test]

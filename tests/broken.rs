@@ -1,5 +1,10 @@
 //! Contract of `boundary` with bad input: one sentence that names the file, the place and what to do; never a panic, a hang or
 //! gigabytes.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot be set up has failed; one that is skipped says so"
+)]
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -181,7 +186,7 @@ fn what_is_no_mesh_is_said_to_be_none() {
 fn a_file_without_permission_is_the_systems_word() {
     use std::os::unix::fs::PermissionsExt as _;
     let (_folder, path) = write("a.obj", TRIANGLE.as_bytes());
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0)).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o0)).unwrap();
     if std::fs::read(&path).is_ok() {
         println!("skipped: this user may read everything");
         return;
@@ -211,6 +216,55 @@ fn a_face_with_very_many_corners_ends() {
     (1..=count).for_each(|i| text.push_str(&format!(" {i}")));
     let (_folder, path) = write("a.obj", text.as_bytes());
     assert_eq!(read(&path).unwrap().triangles.len(), count - 2);
+}
+
+#[test]
+fn faces_that_cross_themselves_and_crowds_around_a_point_end() {
+    let place = |i: usize| ((i * 7919) % 1009, (i * 104_729) % 1013);
+    let mut text: String = (0..900).map(|i| format!("v {} {} 0\n", place(i).0, place(i).1)).collect();
+    for _ in 0..40 {
+        text.push('f');
+        (1..=900).for_each(|i| text.push_str(&format!(" {i}")));
+        text.push('\n');
+    }
+    let (_folder, path) = write("a.obj", text.as_bytes());
+    assert_eq!(read(&path).unwrap().triangles.len(), 40 * 898);
+
+    let mut stl = vec![b' '; 80];
+    let count = 40_000u32;
+    stl.extend(count.to_le_bytes());
+    for i in 0..count {
+        let angle = |i: u32| i as f32 / count as f32 * std::f32::consts::TAU;
+        let corners =
+            [[0.0; 3], [0.0; 3], [angle(i).cos(), angle(i).sin(), 0.0], [angle(i + 1).cos(), angle(i + 1).sin(), 0.0]];
+        stl.extend(corners.into_iter().flatten().flat_map(f32::to_le_bytes));
+        stl.extend([0, 0]);
+    }
+    let (folder, path) = write("a.stl", &stl);
+    let disc = read(&path).unwrap();
+    let start = Instant::now();
+    homunculus::export::mesh(&disc, &disc.positions, None, &folder.path().join("a.glb")).unwrap();
+    assert!(start.elapsed() < PATIENCE);
+}
+
+#[test]
+fn a_small_scene_cannot_unfold_to_gigabytes() {
+    let root = |nodes: &str, primitives: &str, skin: &str| {
+        format!(
+            "{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{nodes}],\"meshes\":[{{\"primitives\":[{primitives}]}}],\"skins\":[{{\"joints\":[{skin}]}}],\"accessors\":[{{\"componentType\":5126,\"count\":100000,\"type\":\"VEC3\"}}]}}"
+        )
+    };
+    let primitive = "{\"attributes\":{\"POSITION\":0}}";
+    let many = |item: &str, count: usize| vec![item; count].join(",");
+    for text in [
+        root(&many("{\"mesh\":0}", 10_000), primitive, ""),
+        root("{\"mesh\":0}", &many(primitive, 10_000), ""),
+        root(&many("{\"mesh\":0,\"skin\":0}", 10_000), primitive, &many("0", 10_000)),
+    ] {
+        let (_folder, path) = write("a.gltf", text.as_bytes());
+        let text = read(&path).map(|_| ()).unwrap_err();
+        assert!(text.contains("more than can be real"), "{text}");
+    }
 }
 
 /// What each of the broken files is met with: a part of the complaint, or the triangles it has all the same.

@@ -245,7 +245,7 @@ impl Reader {
                 .push(format!("{strays} corners refer to texture coordinates or normals that the file does not have"));
         }
         boundary.triangulate_polygons();
-        boundary.regions_from_objects();
+        boundary.regions_from_parts();
         Ok(boundary)
     }
 }
@@ -302,22 +302,25 @@ impl Boundary {
         }
     }
 
-    /// Regions named for the objects, where there are at least two names; a vertex belongs to the first that uses it.
-    pub(crate) fn regions_from_objects(&mut self) {
+    /// Regions named for the objects of the parts or, where these have fewer than two names, for their materials; none where
+    /// these have fewer than two as well. A vertex belongs to the first that uses it.
+    pub(crate) fn regions_from_parts(&mut self) {
         let source = &self.source;
-        let used = |object: u32| source.parts.iter().any(|part| part.object == object);
-        let named =
-            (0..source.objects.len() as u32).filter(|&o| used(o) && !source.objects[o as usize].name.is_empty());
-        if named.count() < 2 {
-            return;
-        }
+        let by_object = |part: &Part| source.objects.get(part.object as usize).map(|object| object.name.as_str());
+        let by_material = |part: &Part| source.materials.materials.get(part.material as usize)?.get("name")?.as_str();
+        let (objects, materials): (Vec<_>, Vec<_>) =
+            source.parts.iter().map(|p| (by_object(p), by_material(p))).unzip();
+        let is_told_apart = |names: &[Option<&str>]| {
+            let mut named = names.iter().flatten().filter(|name| !name.is_empty());
+            named.next().is_some_and(|first| named.any(|other| other != first))
+        };
+        let Some(names) = [objects, materials].into_iter().find(|names| is_told_apart(names)) else { return };
         let mut regions = Regions { names: Vec::new(), of_vertex: vec![NONE; self.positions.len()] };
         let mut index_of: HashMap<&str, u32> = HashMap::new();
-        for polygon in 0..source.polygons.len() {
-            let Some(part) = source.polygon_parts.get(polygon) else { continue };
-            let Some(object) = source.objects.get(source.parts[*part as usize].object as usize) else { continue };
-            let index = *index_of.entry(&object.name).or_insert_with(|| {
-                regions.names.push(object.name.clone());
+        for (polygon, &part) in source.polygon_parts.iter().enumerate() {
+            let Some(name) = names[part as usize].filter(|name| !name.is_empty()) else { continue };
+            let index = *index_of.entry(name).or_insert_with(|| {
+                regions.names.push(name.to_owned());
                 regions.names.len() as u32 - 1
             });
             for &vertex in &source.polygons.corners[source.polygons.range(polygon)] {

@@ -169,7 +169,8 @@ pub(crate) fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Inverse of [`linear_from_srgb`].
+/// Inverse of [`linear_from_srgb`]; in double precision, so that white stays 1 exactly.
 pub(crate) fn srgb_from_linear(value: f32) -> f32 {
-    if value <= 0.003_130_8 { value * 12.92 } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
+    let value = f64::from(value);
+    (if value <= 0.003_130_8 { value * 12.92 } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }) as f32
 }

@@ -103,7 +103,7 @@ fn ascii(text: &str) -> Result<Boundary, String> {
     if boundary.positions.len() != 3 * boundary.triangles.len() {
         return Err(format!("it ends within facet {}; get the whole file again", boundary.triangles.len()));
     }
-    boundary.regions_from_objects();
+    boundary.regions_from_parts();
     boundary.source.original = Original::Stl(StlKind::Ascii);
     Ok(boundary)
 }

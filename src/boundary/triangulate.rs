@@ -2,9 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-/// Polygons with more corners are fanned: ear clipping takes quadratic time, and no modeller makes a concave face this large.
-/// A tenth would fan real caps of lathed parts; ten times would let one malicious face take minutes.
-const MAX_EARS: usize = 2048;
+/// Polygons with more corners are fanned: ear clipping takes at least quadratic time, and no modeller makes a concave face this
+/// large. A tenth would fan real caps of lathed parts; ten times would let one malicious face take minutes.
+const MAX_EARS: usize = 1024;
 
 /// Triangles of one polygon, as indices into `corners` (`0..corners.len()`), in the polygon's orientation.
 ///
@@ -69,12 +69,15 @@ fn clip_ears(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
                     || turn(b, c, p) < 0.0
                     || turn(c, a, p) < 0.0
             });
-        // A ring without ear is folded or self-crossing: no triangulation is right, so clip on and end.
-        if is_ear || misses > count {
+        if is_ear {
             triangles.push([a, b, c]);
             ring.remove((at + 1) % count);
             at = if at >= ring.len() { 0 } else { at };
             misses = 0;
+        } else if misses > count {
+            // A ring without ear is folded or crosses itself: no triangulation is right, so any will do.
+            triangles.extend((1..count - 1).map(|i| [ring[0], ring[i], ring[i + 1]]));
+            return;
         } else {
             at = (at + 1) % count;
             misses += 1;

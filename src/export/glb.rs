@@ -231,7 +231,10 @@ impl<'a> Scene<'a> {
 
     fn texture_coordinates(&mut self) {
         let uvs = &self.surface.boundary.source.uvs;
-        if self.surface.boundary.source.corner_uvs.is_empty() {
+        let source = &self.surface.boundary.source;
+        // A texture without coordinates is no valid glTF; other formats show its first pixel then, and so do zeros here.
+        let is_asked_for = !self.is_neutral && !source.materials.textures.is_empty();
+        if source.corner_uvs.is_empty() && !is_asked_for {
             return;
         }
         let values = self

@@ -6,7 +6,7 @@
 //! materials, textures and named attributes go along as far as the format can hold them. A file written in the format it was
 //! read from is the same file with other numbers: an OBJ line by line, a PLY property by property.
 //!
-//! Normals are computed anew from the warped triangles, with hard edges where the input had them ([`normals`]).
+//! Normals are computed anew from the warped triangles, with hard edges where the input had them.
 //!
 //! # What is not
 //!

@@ -2,7 +2,7 @@
 //!
 //! Corners are sorted once, on the input, into *smoothing classes* which share a normal:
 //!
-//! - input with normals: corners at the same place with the same normal. Seams of texture coordinates stay smooth, hard edges hard;
+//! - input with normals: corners at the same place with the same normal, up to [`SAME_NORMAL_DEGREES`]. Seams of texture coordinates stay smooth, hard edges hard;
 //! - STL, which has one normal for each facet and says nothing of smoothness: corners at the same place whose facets form less
 //!   than [`CREASE_DEGREES`];
 //! - any other input: corners of the same vertex.
@@ -21,7 +21,12 @@ use crate::boundary::source::{NONE, Original};
 /// boxes and cylinders' rims more; common modellers propose 30 to 60.
 const CREASE_DEGREES: f64 = 40.0;
 
-/// Facets around one vertex beyond which creases are not sought: the search is quadratic.
+/// Normals of the input that differ by less are one: at seams, writers round them differently. A tenth would leave the rounding
+/// of bytes visible as a crease after warping; ten times would smooth bevels that were meant flat.
+const SAME_NORMAL_DEGREES: f32 = 1.0;
+
+/// Facets around one vertex beyond which creases are not sought and all is smooth: the search is quadratic. Even finely
+/// tessellated caps seldom have more.
 const MAX_FACETS: usize = 64;
 
 /// The smoothing classes of a boundary.
@@ -47,21 +52,33 @@ impl Smoothing {
     fn by_normal(boundary: &Boundary) -> Self {
         let source = &boundary.source;
         let welded = boundary.welded();
+        // Where, and which normal exactly; then, at each place, the first normals with their classes.
         let mut known: HashMap<(u32, Option<[u32; 3]>), u32> = HashMap::new();
+        let mut leaders: HashMap<u32, Vec<(Vec3, u32)>> = HashMap::new();
+        let mut count = 0;
+        let least_cosine = SAME_NORMAL_DEGREES.to_radians().cos();
         let mut class = |triangle: usize, corner: usize| {
             let vertex = boundary.triangles[triangle][corner];
-            let normal = match source.triangle_corners.get(triangle).map(|c| source.corner_normals[c[corner] as usize])
-            {
-                Some(index) if index != NONE => {
-                    Some((source.normals[index as usize] + Vec3::ZERO).to_array().map(f32::to_bits))
-                }
-                _ => None,
-            };
-            let next = known.len() as u32;
-            *known.entry((if normal.is_some() { welded[vertex as usize] } else { vertex }, normal)).or_insert(next)
+            let index =
+                source.triangle_corners.get(triangle).map_or(NONE, |c| source.corner_normals[c[corner] as usize]);
+            let normal = source.normals.get(index as usize).map(|&normal| normal + Vec3::ZERO);
+            let place = if normal.is_some() { welded[vertex as usize] } else { vertex };
+            *known.entry((place, normal.map(|n| n.to_array().map(f32::to_bits)))).or_insert_with(|| {
+                let direction = normal.unwrap_or_default().normalize_or_zero();
+                let here = leaders.entry(place).or_default();
+                let near =
+                    here.iter().find(|(leader, _)| leader.dot(direction) >= least_cosine).map(|&(_, class)| class);
+                near.unwrap_or_else(|| {
+                    if here.len() < MAX_FACETS {
+                        here.push((direction, count));
+                    }
+                    count += 1;
+                    count - 1
+                })
+            })
         };
         let classes = (0..boundary.triangles.len()).map(|t| [0, 1, 2].map(|c| class(t, c))).collect();
-        Self { classes, count: known.len() }
+        Self { classes, count: count as usize }
     }
 
     fn by_crease(boundary: &Boundary) -> Self {
@@ -79,17 +96,16 @@ impl Smoothing {
         for corners in &around {
             let mut group: Vec<usize> = (0..corners.len()).collect();
             for i in 0..corners.len() {
-                let is_smooth =
-                    |j: usize| facets[corners[i].0 as usize].dot(facets[corners[j].0 as usize]) >= least_cosine;
-                let joined = (0..i).filter(|&j| corners.len() > MAX_FACETS || is_smooth(j));
-                for j in joined.collect::<Vec<_>>() {
+                let is_crowd = corners.len() > MAX_FACETS;
+                let cosine = |j: usize| facets[corners[i].0 as usize].dot(facets[corners[j].0 as usize]);
+                for j in 0..if is_crowd { i.min(1) } else { i } {
                     let (from, to) = (group[i].max(group[j]), group[i].min(group[j]));
-                    if from != to {
-                        group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+                    if from == to || !(is_crowd || cosine(j) >= least_cosine) {
+                        continue;
                     }
-                    if corners.len() > MAX_FACETS {
-                        break;
-                    }
+                    // Only corners up to this one have been joined so far; in a crowd, none to this one.
+                    let joined = if is_crowd { &mut group[i..=i] } else { &mut group[..=i] };
+                    joined.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
                 }
             }
             for (&(triangle, corner), &leader) in corners.iter().zip(&group) {

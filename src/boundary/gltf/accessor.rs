@@ -91,9 +91,9 @@ impl<'a> Buffers<'a> {
         Ok(bytes)
     }
 
-    /// Accounts for bytes that are copied out of the buffers.
+    /// Accounts for numbers, or bytes, that are made of the buffers' content otherwise.
     pub fn spend(&mut self, bytes: usize) -> Result<(), String> {
-        self.budget = self.budget.checked_sub(bytes).ok_or("its images are many times larger than the file")?;
+        self.budget = self.budget.checked_sub(bytes).ok_or("it unfolds to many times its own size, more than can be real; reduce the instances or export the scene again")?;
         Ok(())
     }
 

@@ -165,6 +165,9 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary> {
     for part in &mut boundary.source.parts {
         part.material = if (part.material as usize) < materials { part.material } else { super::source::NONE };
     }
+    if boundary.regions.is_none() {
+        boundary.regions_from_parts();
+    }
     Ok(boundary)
 }
 

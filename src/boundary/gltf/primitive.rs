@@ -202,6 +202,7 @@ impl Gatherer {
     ) -> Result<(), String> {
         let position = primitive.attributes.get("POSITION").copied().unwrap_or_default();
         let count = buffers.count(position)?;
+        buffers.spend(3 * count)?;
         let indices: Vec<u32> = match primitive.indices {
             None => (0..count as u32).collect(),
             Some(accessor) => {
@@ -223,6 +224,7 @@ impl Gatherer {
             6 => indices.windows(2).skip(1).map(|t| [indices[0], t[0], t[1]]).collect(),
             _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         };
+        buffers.spend(9 * corners.len())?;
         let source = &mut self.boundary.source;
         source.parts.push(part);
         for [a, b, c] in corners {
@@ -259,7 +261,6 @@ impl Gatherer {
         if self.left_out > 0 {
             boundary.warnings.push(format!("{} primitives of points or lines are left out", self.left_out));
         }
-        boundary.regions_from_objects();
         if self.bone_names.len() > 1 {
             boundary.regions = Some(Regions { names: self.bone_names, of_vertex: self.bones });
         }

@@ -100,6 +100,7 @@ pub(super) struct Joint {
 fn joints(document: &Document, node: &Node, world: &[DMat4], buffers: &mut Buffers) -> Result<Vec<Joint>, String> {
     let Some(index) = node.skin else { return Ok(Vec::new()) };
     let skin = document.skins.get(index).ok_or_else(|| no_such("skin", index, document.skins.len()))?;
+    buffers.spend(16 * skin.joints.len())?;
     let inverse_bind = skin.inverse_bind_matrices.map(|accessor| buffers.numbers(accessor)).transpose()?;
     if inverse_bind.as_ref().is_some_and(|m| m.width != 16 || m.count() < skin.joints.len()) {
         return Err(format!("skin {index} has fewer inverse bind matrices than joints; export the scene again"));
