@@ -317,13 +317,15 @@ fn progress(world: &World, entity: Entity) -> Progress {
 fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
     let mut watch = world.remove_resource::<Stopwatch>()?;
     let mut shells = std::mem::take(&mut world.get_mut::<Shells>(entity)?.0);
+    let mut film = std::mem::take(&mut world.get_mut::<Reel>(entity)?.0);
     let get = world.get_entity(entity).ok()?;
     let (domain, Lattice(complex), Bound(binding)) = (get.get::<Domain>()?, get.get::<Lattice>()?, get.get::<Bound>()?);
-    let (CollisionProblem(problem), Reel(film)) = (get.get::<CollisionProblem>()?, get.get::<Reel>()?);
+    let CollisionProblem(problem) = get.get::<CollisionProblem>()?;
     let (importance, linear) = (get.get::<Importance>()?, get.get::<LinearSolution>()?);
 
     let classic = watch.time("classic", || certify(complex, &mut shells[..1], &linear.0));
-    let (chosen, failed) = watch.time("certificate", || film.select(domain.settings.keys, complex, &mut shells));
+    let (chosen, failed) =
+        watch.time("certificate", || film.select(domain.settings.keys, complex, &mut shells, &problem.importance));
     let mut frames: Vec<Frame> = watch.time("transfer", || {
         chosen
             .iter()

@@ -10,9 +10,10 @@ use glam::Vec3A;
 use rayon::prelude::*;
 
 use crate::{
-    boundary::Boundary,
+    boundary::{Boundary, Sets},
     certificate::{Surface, orientation},
     edge::CHUNK,
+    film::blend,
     transfer::Binding,
     voxel::{Complex, KUHN},
 };
@@ -23,14 +24,30 @@ pub struct Shell {
     surface: Surface,
     /// How its vertices follow the nodes; `None` where they are the nodes.
     binding: Option<Binding>,
-    /// Pairs of triangles that crossed at rest already, sorted: what the input brought is not ours to mend.
-    inherited: Vec<(u32, u32)>,
+    /// How many pairs of triangles crossed at rest already: what the input brought is not ours to mend. Triangles that
+    /// touch but for rounding are treated alike.
+    inherited: usize,
+    /// Pairs of corner identities, one from each triangle of such a pair, both ways, sorted. A crossing may slide along
+    /// the surface, so that triangles crossed next to those that did are the same crossing.
+    inherited_corners: Vec<(u32, u32)>,
+    /// `[triangles]` piece of surface that hangs together; empty for the skin.
+    piece: Vec<u32>,
+    /// Pairs of pieces that crossed at rest, both ways, sorted: an eye in its socket, a spout stuck into a pot. They stay
+    /// stuck into each other, and their crossing may slide far.
+    inherited_pieces: Vec<(u32, u32)>,
 }
 
 impl Shell {
     /// The boundary faces of the complex.
     pub fn skin(complex: &Complex) -> Self {
-        Self { surface: Surface::new(complex.faces.clone(), &complex.rest), binding: None, inherited: Vec::new() }
+        Self {
+            surface: Surface::new(complex.faces.clone(), &complex.rest),
+            binding: None,
+            inherited: 0,
+            inherited_corners: Vec::new(),
+            piece: Vec::new(),
+            inherited_pieces: Vec::new(),
+        }
     }
 
     /// The boundary surface B as it will be written.
@@ -42,13 +59,59 @@ impl Shell {
         let identities = boundary.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
         let rest = binding.apply_for_check(&complex.rest);
         let mut surface = Surface::welded(boundary.triangles.clone(), identities, &rest);
-        let inherited = surface.crossings(&rest);
-        Self { surface, binding: Some(binding), inherited }
+        let mut inherited = surface.crossings(&rest);
+        let crossing_at_rest = inherited.len();
+        for seed in 1..=NUDGES {
+            inherited.extend(surface.crossings(&nudged(&rest, &welded, NUDGE * binding.check_cell_size(), seed)));
+        }
+        inherited.sort_unstable();
+        inherited.dedup();
+        let mut inherited_corners: Vec<(u32, u32)> = inherited
+            .iter()
+            .flat_map(|&(s, t)| [(s, t), (t, s)])
+            .flat_map(|(s, t)| {
+                let (s, t) = (surface.identities[s as usize], surface.identities[t as usize]);
+                s.into_iter().flat_map(move |a| t.map(|b| (a, b)))
+            })
+            .collect();
+        inherited_corners.sort_unstable();
+        inherited_corners.dedup();
+        let piece = pieces(&surface.identities, boundary.positions.len());
+        let mut inherited_pieces: Vec<(u32, u32)> = inherited
+            .iter()
+            .map(|&(s, t)| (piece[s as usize], piece[t as usize]))
+            .filter(|(a, b)| a != b)
+            .flat_map(|(a, b)| [(a, b), (b, a)])
+            .collect();
+        inherited_pieces.sort_unstable();
+        inherited_pieces.dedup();
+        Self {
+            surface,
+            binding: Some(binding),
+            inherited: crossing_at_rest,
+            inherited_corners,
+            piece,
+            inherited_pieces,
+        }
     }
 
     /// Pairs that crossed at rest.
     pub fn inherited(&self) -> usize {
-        self.inherited.len()
+        self.inherited
+    }
+
+    /// Whether a crossing of these triangles was there at rest, between them or their neighbours.
+    fn is_inherited(&self, (s, t): (u32, u32)) -> bool {
+        if self.inherited_corners.is_empty() {
+            return false;
+        }
+        let pieces = (self.piece[s as usize], self.piece[t as usize]);
+        self.inherited_pieces.binary_search(&pieces).is_ok()
+            || self.surface.identities[s as usize].iter().any(|&a| {
+                self.surface.identities[t as usize]
+                    .iter()
+                    .any(|&b| self.inherited_corners.binary_search(&(a, b)).is_ok())
+            })
     }
 
     fn positions<'a>(&self, nodes: &'a [Vec3A]) -> Cow<'a, [Vec3A]> {
@@ -78,6 +141,26 @@ impl Shell {
         }
     }
 
+    /// Adds the nodes of crossing pairs among `near` in a state, of those that have a node in `moved` if given.
+    fn mark_crossings(&self, near: &[(u32, u32)], nodes: &[Vec3A], moved: Option<&[bool]>, marked: &mut Vec<u32>) {
+        let touched = |t: u32| match moved {
+            None => true,
+            Some(moved) => {
+                let mut corners = self.surface.triangles[t as usize].iter();
+                corners.any(|&v| self.nodes_of(v).iter().any(|&i| moved[i as usize]))
+            }
+        };
+        let again: Vec<(u32, u32)> = near.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect();
+        if again.is_empty() {
+            return;
+        }
+        let crossing = self.surface.crossing_pairs(&again, &self.positions(nodes));
+        for (s, t) in crossing.into_iter().filter(|&pair| !self.is_inherited(pair)) {
+            marked.extend(self.nodes_of_triangle(s));
+            marked.extend(self.nodes_of_triangle(t));
+        }
+    }
+
     /// All crossing pairs of a state that were not there at rest. Exact.
     pub fn crossings(&mut self, nodes: &[Vec3A]) -> Vec<(u32, u32)> {
         let positions = match &self.binding {
@@ -85,7 +168,7 @@ impl Shell {
             Some(binding) => Cow::Owned(binding.apply_for_check(nodes)),
         };
         let mut pairs = self.surface.crossings(&positions);
-        pairs.retain(|pair| self.inherited.binary_search(pair).is_err());
+        pairs.retain(|&pair| !self.is_inherited(pair));
         pairs
     }
 
@@ -95,16 +178,51 @@ impl Shell {
     }
 }
 
+/// How far vertices are nudged to find triangles that touch but for rounding, in cells: some units in the last place of
+/// f32 coordinates at 256 cells. Sheets nearer to each other than that cross or not by chance once they are moved.
+const NUDGE: f32 = 5.0e-5;
+
+/// Nudged copies of the rest surface that are looked at.
+const NUDGES: u32 = 2;
+
+/// Every point moved by up to `size` along each axis; equal identities move alike.
+fn nudged(points: &[Vec3A], identities: &[u32], size: f32, seed: u32) -> Vec<Vec3A> {
+    let hash = |x: u32| {
+        let x = (x ^ (x >> 16)).wrapping_mul(0x7FEB_352D);
+        let x = (x ^ (x >> 15)).wrapping_mul(0x846C_A68B);
+        ((x ^ (x >> 16)) >> 8) as f32 / (1 << 23) as f32 - 1.0
+    };
+    let axis = |id: u32, k: u32| hash(id.wrapping_mul(3).wrapping_add(k) ^ seed.wrapping_mul(0x9E37_79B9));
+    points
+        .iter()
+        .zip(identities)
+        .map(|(p, &id)| *p + size * Vec3A::new(axis(id, 0), axis(id, 1), axis(id, 2)))
+        .collect()
+}
+
+/// `[triangles]` a number for each set of triangles that hang together by corners.
+fn pieces(identities: &[[u32; 3]], vertices: usize) -> Vec<u32> {
+    let mut sets = Sets::new(vertices);
+    for &[a, b, c] in identities {
+        sets.join(a, b);
+        sets.join(b, c);
+    }
+    identities.iter().map(|t| sets.find(t[0])).collect()
+}
+
 /// Elements may not shrink further once below this part of their target volume. Zero would let slivers through that the
 /// next step cannot leave; above about 0.1 hard cases lock too early.
 const VOLUME_FLOOR: f32 = 0.05;
 
 /// After this many halvings a node stays where it is.
-const HALVINGS: u8 = 5;
+const HALVINGS: u8 = 3;
 
-/// Rounds after which the whole step is dropped. Each round holds back more and no step at all is valid, so the rounds
-/// end by themselves; this bounds their time on states that lock in many places.
-const MOST_ROUNDS: u32 = 60;
+/// Rounds of holding back before the whole step is shortened instead: where holds spread from ring to ring, a shorter
+/// smooth step folds less than a long one with a frozen patch in it.
+const MOST_ROUNDS: u32 = 24;
+
+/// Parts of the whole step that are tried; after the last the state stays as it is, which is valid.
+const WHOLE_STEPS: [f32; 3] = [1.0, 0.25, 0.0625];
 
 /// Cells per parallel task.
 const CELLS_PER_TASK: usize = 512;
@@ -118,6 +236,25 @@ pub struct Guarded {
     pub rounds: u32,
 }
 
+/// Where on the way of a step its validity is looked at, as parts of the step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Watch {
+    /// At its end: enough for the skin, whose cells are thicker than a step is long.
+    End,
+    /// On the way too: for sheets of the boundary, which may lie nearer to each other than a step is long and must not
+    /// change places unseen, and for keyframes, whose blends are shown.
+    Way,
+}
+
+impl Watch {
+    fn parts(self) -> &'static [f32] {
+        match self {
+            Self::End => &[1.0],
+            Self::Way => &[0.25, 0.5, 0.75, 1.0],
+        }
+    }
+}
+
 /// Makes `proposed` valid by drawing nodes back towards `current`. `size` is `[cells]`, the size asked for now.
 pub fn guard(
     complex: &Complex,
@@ -125,46 +262,55 @@ pub fn guard(
     size: &[f32],
     current: &[Vec3A],
     proposed: &mut [Vec3A],
+    watch: Watch,
 ) -> Guarded {
-    let mut near: Vec<Vec<(u32, u32)>> = shells.iter_mut().map(|s| s.near_pairs(current, proposed)).collect();
+    let near: Vec<Vec<(u32, u32)>> = shells.iter_mut().map(|s| s.near_pairs(current, proposed)).collect();
+    let full: Vec<Vec3A> = proposed.to_vec();
+    let mut guarded = Guarded::default();
+    for whole in WHOLE_STEPS {
+        for ((p, x), f) in proposed.iter_mut().zip(current).zip(&full) {
+            *p = *x + whole * (*f - *x);
+        }
+        let held = hold_back(complex, shells, &near, size, current, proposed, watch, &mut guarded.rounds);
+        if let Some(held) = held {
+            guarded.held_back = if whole < 1.0 { complex.nodes() as u32 } else { held };
+            return guarded;
+        }
+    }
+    proposed.copy_from_slice(current);
+    guarded.held_back = complex.nodes() as u32;
+    guarded
+}
+
+/// Draws nodes back until the step is valid; how many were held, or `None` if that takes too many rounds.
+#[expect(clippy::too_many_arguments, reason = "the inner loop of `guard`, with its state")]
+fn hold_back(
+    complex: &Complex,
+    shells: &[Shell],
+    near: &[Vec<(u32, u32)>],
+    size: &[f32],
+    current: &[Vec3A],
+    proposed: &mut [Vec3A],
+    watch: Watch,
+    rounds: &mut u32,
+) -> Option<u32> {
     let full: Vec<Vec3A> = proposed.to_vec();
     let mut halved = vec![0_u8; complex.nodes()];
     let mut moved: Option<Vec<bool>> = None;
-    let mut guarded = Guarded::default();
-    loop {
-        let mut marked = bad_cells(complex, size, current, proposed, moved.as_deref());
-        for (shell, near) in shells.iter().zip(&mut near) {
-            let positions = shell.positions(proposed);
-            let crossing = match &moved {
-                None => {
-                    near.retain(|&(s, t)| shell.inherited.binary_search(&(s.min(t), s.max(t))).is_err());
-                    shell.surface.crossing_pairs(near, &positions)
-                }
-                Some(moved) => {
-                    let touched = |t: u32| {
-                        shell.surface.triangles[t as usize]
-                            .iter()
-                            .any(|&v| shell.nodes_of(v).iter().any(|&i| moved[i as usize]))
-                    };
-                    let again: Vec<(u32, u32)> =
-                        near.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect();
-                    shell.surface.crossing_pairs(&again, &positions)
-                }
-            };
-            for t in crossing.into_iter().flat_map(|(s, t)| [s, t]) {
-                for v in shell.surface.triangles[t as usize] {
-                    marked.extend_from_slice(&shell.nodes_of(v));
-                }
+    for _ in 0..MOST_ROUNDS {
+        let mut marked = Vec::new();
+        for &part in watch.parts() {
+            let state: Cow<'_, [Vec3A]> =
+                if part < 1.0 { Cow::Owned(blend(current, proposed, part)) } else { Cow::Borrowed(&*proposed) };
+            marked.extend(bad_cells(complex, size, current, &state, moved.as_deref()));
+            for (shell, near) in shells.iter().zip(near) {
+                shell.mark_crossings(near, &state, moved.as_deref(), &mut marked);
             }
         }
         if marked.is_empty() {
-            break;
+            return Some(halved.iter().filter(|&&h| h > 0).count() as u32);
         }
-        guarded.rounds += 1;
-        if guarded.rounds > MOST_ROUNDS {
-            proposed.copy_from_slice(current);
-            break;
-        }
+        *rounds += 1;
         let mut changed = vec![false; complex.nodes()];
         for i in marked {
             changed[i as usize] = true;
@@ -184,8 +330,7 @@ pub fn guard(
         }
         moved = Some(changed);
     }
-    guarded.held_back = halved.iter().filter(|&&h| h > 0).count() as u32;
-    guarded
+    None
 }
 
 /// Nodes of elements that the step would break, cell by cell.

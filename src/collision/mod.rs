@@ -28,7 +28,7 @@ use crate::{
 };
 pub use contact::Contacts;
 pub use growth::Growth;
-pub use guard::{Guarded, Shell};
+pub use guard::{Guarded, Shell, Watch};
 
 /// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing
 /// (measured: the rotations, not the solve, are what converges slowly).
@@ -202,7 +202,8 @@ pub fn guard_step(
     mut proposed: Vec<Vec3A>,
 ) -> (f32, Guarded) {
     guard::limit(positions, &mut proposed, STEP_LIMIT);
-    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed);
+    let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
+    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch);
     let motion = positions
         .par_iter()
         .zip(&proposed)

@@ -50,6 +50,11 @@ pub struct Warped(pub Vec<Vec3A>);
 #[derive(Component, Debug)]
 pub struct Shells(pub Vec<Shell>);
 
+/// Whether the boundary as it will be written is guarded in every iteration, and not only when a keyframe is made: once
+/// it had to be drawn back, it will have to be again, and small holds are better than large ones.
+#[derive(Component, Debug, Default)]
+pub struct BoundaryAtRisk(pub bool);
+
 /// What the guard held back in the last iteration.
 #[derive(Component, Debug, Default)]
 pub struct HeldBack(pub Guarded);
@@ -88,7 +93,7 @@ fn start(
             Warped(complex.rest.clone()),
             Shells(vec![Shell::skin(complex)]),
             (Sizes::default(), Rotations::default(), Targets::default(), Touching::default(), Proposed::default()),
-            HeldBack::default(),
+            (HeldBack::default(), BoundaryAtRisk::default()),
         ));
     }
 }
@@ -138,19 +143,28 @@ fn propose(
     }
 }
 
-fn accept(
-    mut domains: Query<(&Lattice, &Sizes, &mut Growing, &mut Shells, &mut Warped, &mut Proposed, &mut HeldBack)>,
-    mut watch: ResMut<Stopwatch>,
-) {
-    for (Lattice(complex), sizes, mut growing, mut shells, mut warped, mut proposed, mut held_back) in &mut domains {
+type Accepted<'a> = (
+    &'a Lattice,
+    &'a Sizes,
+    &'a BoundaryAtRisk,
+    &'a mut Growing,
+    &'a mut Shells,
+    &'a mut Warped,
+    &'a mut Proposed,
+    &'a mut HeldBack,
+);
+
+fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
+    for (Lattice(complex), sizes, at_risk, mut growing, mut shells, mut warped, mut proposed, mut held_back) in
+        &mut domains
+    {
         if growing.0.done() {
             continue;
         }
         let proposed = std::mem::take(&mut proposed.0);
-        let (motion, guarded) = watch.time("guard", || {
-            // Only the complex's skin in every iteration; the boundary itself is looked at when a keyframe is made.
-            guard_step(complex, &sizes.0, &mut shells.0[..1], &mut warped.0, proposed)
-        });
+        let guarded = if at_risk.0 { shells.0.len() } else { 1 };
+        let (motion, guarded) =
+            watch.time("guard", || guard_step(complex, &sizes.0, &mut shells.0[..guarded], &mut warped.0, proposed));
         growing.0.iterated(motion);
         held_back.0 = guarded;
     }

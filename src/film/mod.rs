@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::{
     certificate::{Certificate, certify},
-    collision::Shell,
+    collision::{Shell, Watch, guard::guard},
     edge::CHUNK,
     voxel::Complex,
 };
@@ -35,6 +35,9 @@ pub struct Film {
 
 /// Blends that are checked between two keyframes.
 const BLENDS: [f32; 3] = [0.25, 0.5, 0.75];
+
+/// Intervals of λ are not halved below this: less than a frame of any recording.
+const SHORTEST_STEP: f32 = 5.0e-4;
 
 impl Film {
     /// Adds the next keyframe; its λ must be above the last one's, or equal, which replaces it.
@@ -61,13 +64,14 @@ impl Film {
     }
 
     /// Chooses about `keys` keyframes after the rest state, evenly in λ, and more wherever a blend of two chosen ones
-    /// fails the check. Returns their indices, first and last included, and the certificates of all blends checked
-    /// between them that failed although nothing solved lies between.
+    /// fails the check: ones the film holds between them, else new ones, made by [`between`]. Returns their indices,
+    /// first and last included, and the certificates of blends that could not be mended.
     pub fn select(
-        &self,
+        &mut self,
         keys: usize,
         complex: &Complex,
         shells: &mut [Shell],
+        size: &[f32],
     ) -> (Vec<usize>, Vec<(f32, Certificate)>) {
         let Some(last) = self.keyframes.len().checked_sub(1) else { return (Vec::new(), Vec::new()) };
         let mut chosen: Vec<usize> = (0..=keys)
@@ -81,14 +85,27 @@ impl Film {
         let mut k = 0;
         while k + 1 < chosen.len() {
             let (a, b) = (chosen[k], chosen[k + 1]);
-            match self.bad_blend(a, b, complex, shells) {
-                Some(_) if b - a > 1 => chosen.insert(k + 1, usize::midpoint(a, b)),
-                Some(bad) => {
-                    failed.push(bad);
-                    k += 1;
-                }
-                None => k += 1,
+            let Some(bad) = self.bad_blend(a, b, complex, shells) else {
+                k += 1;
+                continue;
+            };
+            if b - a > 1 {
+                chosen.insert(k + 1, usize::midpoint(a, b));
+                continue;
             }
+            let (from, to) = (&self.keyframes[a], &self.keyframes[b]);
+            let sound = from.certificate.certified() && to.certificate.certified();
+            if !sound || to.lambda - from.lambda < SHORTEST_STEP {
+                failed.push(bad);
+                k += 1;
+                continue;
+            }
+            let keyframe = between(complex, shells, size, from, to);
+            self.keyframes.insert(b, keyframe);
+            for later in &mut chosen[k + 1..] {
+                *later += 1;
+            }
+            chosen.insert(k + 1, b);
         }
         (chosen, failed)
     }
@@ -100,6 +117,14 @@ impl Film {
             (!certificate.certified()).then_some((a.lambda + t * (b.lambda - a.lambda), certificate))
         })
     }
+}
+
+/// A keyframe half-way between two, guarded from the first of them.
+pub fn between(complex: &Complex, shells: &mut [Shell], size: &[f32], a: &Keyframe, b: &Keyframe) -> Keyframe {
+    let mut positions = blend(&a.positions, &b.positions, 0.5);
+    guard(complex, shells, size, &a.positions, &mut positions, Watch::Way);
+    let certificate = certify(complex, shells, &positions);
+    Keyframe { lambda: 0.5 * (a.lambda + b.lambda), positions, certificate }
 }
 
 /// `(1 − t) a + t b`.

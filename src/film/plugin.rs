@@ -1,13 +1,14 @@
 //! Certify: turns a settled state into a keyframe of the film, and goes on to the next λ.
 
 use bevy::prelude::*;
+use glam::Vec3A;
 
 use super::{Film, Keyframe, blend};
 use crate::{
     certificate::{Certificate, certify},
     collision::{
-        Shell, guard,
-        plugin::{Growing, Shells, Sizes, Warped},
+        Shell, Watch, guard,
+        plugin::{BoundaryAtRisk, Growing, Shells, Sizes, Warped},
     },
     diagnostics::Stopwatch,
     schedule::{Solve, Stage},
@@ -18,10 +19,6 @@ use crate::{
 #[derive(Component, Debug, Default)]
 pub struct Reel(pub Film);
 
-/// Blends between two keyframes are mended by halving the interval at most this often: 2⁻⁴ of a step of λ is less than
-/// a frame of any recording.
-const MENDINGS: u32 = 4;
-
 /// Adds the stage.
 pub struct FilmPlugin;
 
@@ -31,9 +28,11 @@ impl Plugin for FilmPlugin {
     }
 }
 
+type Unfilmed = (With<Growing>, Without<Reel>);
+
 fn open(
     mut commands: Commands,
-    mut domains: Query<(Entity, &Lattice, &mut Shells), (With<Growing>, Without<Reel>)>,
+    mut domains: Query<(Entity, &Lattice, &mut Shells), Unfilmed>,
     mut watch: ResMut<Stopwatch>,
 ) {
     for (entity, Lattice(complex), mut shells) in &mut domains {
@@ -44,62 +43,39 @@ fn open(
     }
 }
 
-fn keep(
-    mut domains: Query<(&Lattice, &Sizes, &mut Growing, &mut Warped, &mut Shells, &mut Reel)>,
-    mut watch: ResMut<Stopwatch>,
-) {
-    for (Lattice(complex), sizes, mut growing, mut warped, mut shells, mut reel) in &mut domains {
+type Filmed<'a> =
+    (&'a Lattice, &'a Sizes, &'a mut Growing, &'a mut Warped, &'a mut Shells, &'a mut Reel, &'a mut BoundaryAtRisk);
+
+fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
+    for (Lattice(complex), sizes, mut growing, mut warped, mut shells, mut reel, mut at_risk) in &mut domains {
         if growing.0.done() || !growing.0.settled() {
             continue;
         }
-        let lambda = growing.0.lambda();
-        let certificate = commit(complex, &sizes.0.size, &mut shells.0, &reel.0, &mut warped.0, &mut watch);
-        let keyframe = Keyframe { lambda, positions: warped.0.clone(), certificate };
-        mend_blend(complex, &sizes.0.size, &mut shells.0, &mut reel.0, &keyframe, MENDINGS, &mut watch);
-        reel.0.push(keyframe);
+        let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
+        let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
+        let half_way = film.keyframes().last().map(|last| blend(&last.positions, warped, 0.5));
+        let way_is_clear =
+            half_way.is_none_or(|state| watch.time("certificate", || certify(complex, shells, &state)).certified());
+        if !certificate.certified() || !way_is_clear {
+            at_risk.0 = true;
+            certificate = draw_back(complex, &sizes.0.size, shells, film, warped, &mut watch);
+        }
+        film.push(Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate });
         growing.0.advance();
     }
 }
 
-/// Certifies the state; where the written surface crosses itself, draws it back towards the last keyframe first.
-fn commit(
+/// Draws a state that cannot be reached without crossing back towards the last keyframe, and certifies it.
+fn draw_back(
     complex: &Complex,
     size: &[f32],
     shells: &mut [Shell],
     film: &Film,
-    warped: &mut Vec<glam::Vec3A>,
+    warped: &mut [Vec3A],
     watch: &mut Stopwatch,
 ) -> Certificate {
-    let certificate = watch.time("certificate", || certify(complex, shells, warped));
-    let Some(last) = film.keyframes().last().filter(|k| !certificate.certified() && k.certificate.certified()) else {
-        return certificate;
-    };
-    watch.time("guard", || guard::guard(complex, shells, size, &last.positions, warped));
+    if let Some(last) = film.keyframes().last().filter(|k| k.certificate.certified()) {
+        watch.time("guard", || guard::guard(complex, shells, size, &last.positions, warped, Watch::Way));
+    }
     watch.time("certificate", || certify(complex, shells, warped))
-}
-
-/// Makes sure that the blend half-way from the film's last keyframe to `next` is valid, by a keyframe there if need be.
-fn mend_blend(
-    complex: &Complex,
-    size: &[f32],
-    shells: &mut [Shell],
-    film: &mut Film,
-    next: &Keyframe,
-    mendings: u32,
-    watch: &mut Stopwatch,
-) {
-    let Some(last) = film.keyframes().last().cloned() else { return };
-    if !(last.certificate.certified() && next.certificate.certified()) || mendings == 0 {
-        return;
-    }
-    let mut middle = blend(&last.positions, &next.positions, 0.5);
-    if watch.time("certificate", || certify(complex, shells, &middle).certified()) {
-        return;
-    }
-    watch.time("guard", || guard::guard(complex, shells, size, &last.positions, &mut middle));
-    let certificate = watch.time("certificate", || certify(complex, shells, &middle));
-    let keyframe = Keyframe { lambda: 0.5 * (last.lambda + next.lambda), positions: middle, certificate };
-    mend_blend(complex, size, shells, film, &keyframe, mendings - 1, watch);
-    film.push(keyframe);
-    mend_blend(complex, size, shells, film, next, mendings - 1, watch);
 }

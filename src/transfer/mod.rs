@@ -155,6 +155,11 @@ impl Binding {
             .collect()
     }
 
+    /// h in the units of [`apply_for_check`](Self::apply_for_check).
+    pub(crate) fn check_cell_size(&self) -> f32 {
+        if self.single { self.grid.cell_size as f32 } else { 1.0 }
+    }
+
     /// B' in cells, each node taking `pick(a, b)` of two states: bounds of what lies between them.
     pub(crate) fn apply_between(&self, a: &[Vec3A], b: &[Vec3A], pick: fn(Vec3A, Vec3A) -> Vec3A) -> Vec<Vec3A> {
         (0..self.nodes.len())
