@@ -178,8 +178,7 @@ fn a_closed_fist_grows() {
     let Some(folder) = shared("meshes") else { return };
     let hand = boundary::read(&folder.join("hand.off")).unwrap();
     // Fingers lie on the palm in the upper half of z; the thumb crosses them at low x.
-    let layers =
-        [sphere(dvec3(0.1, 0.0, 0.3), 0.5, 3.0), sphere(dvec3(-0.35, 0.0, 0.05), 0.25, 3.0)];
+    let layers = [sphere(dvec3(0.1, 0.0, 0.3), 0.5, 3.0), sphere(dvec3(-0.35, 0.0, 0.05), 0.25, 3.0)];
     grown(hand, &layers, 28);
 }
 

@@ -145,7 +145,8 @@ proptest! {
         // Bars in a row, so near each other that all but one must give way; one bar alone, which scales in place.
         let near = gap < 0.4;
         let bar = |z: f64| ([0.0, 0.0, z], [1.0, side, z + side]);
-        let boundary = cuboids("bars", if near { &[bar(0.0), bar(side + gap)] } else { &[bar(0.0)] }.as_slice());
+        let bars = [bar(0.0), bar(side + gap)];
+        let boundary = cuboids("bars", &bars[..if near { 2 } else { 1 }]);
         let layers = [Layer::Sphere { centre: [0.5, 0.0, 0.0], radius: 1.0e4, value: s }];
         let outcome = warp(&boundary, &layers, 10, mu).unwrap();
         prop_assert!(outcome.frames.iter().all(|f| f.certificate.certified()));

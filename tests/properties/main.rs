@@ -28,19 +28,37 @@ pub fn complex(size: IVec3, inside: impl Fn(IVec3) -> bool) -> Complex {
     Complex::from_cells(grid, &cells)
 }
 
+/// A complex that is shown by its cells.
+pub struct Cells(Complex);
+
+impl std::ops::Deref for Cells {
+    type Target = Complex;
+
+    fn deref(&self) -> &Complex {
+        &self.0
+    }
+}
+
+impl std::fmt::Debug for Cells {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let cells: Vec<_> = self.cells.iter().map(|c| c.to_array()).collect();
+        write!(f, "{} cells of {}: {cells:?}", cells.len(), self.grid.cells)
+    }
+}
+
 /// Cells at random, more inside than not, one at least; up to `most` along an axis.
-pub fn scattered(most: u32) -> impl Strategy<Value = Complex> {
+pub fn scattered(most: u32) -> impl Strategy<Value = Cells> {
     (1..=most, 1..=most, 1..=most).prop_flat_map(|(x, y, z)| {
         let size = UVec3::new(x, y, z);
         prop::collection::vec(prop::bool::weighted(0.65), size.element_product() as usize).prop_map(move |mut cells| {
             cells[0] = true;
-            Complex::from_cells(Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: size }, &cells)
+            Cells(Complex::from_cells(Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: size }, &cells))
         })
     })
 }
 
 /// Boxes with a gap of one cell between them, some bridged at one end.
-pub fn boxes_with_gaps(most: i32) -> impl Strategy<Value = Complex> {
+pub fn boxes_with_gaps(most: i32) -> impl Strategy<Value = Cells> {
     let side = 2..=most;
     (side.clone(), side.clone(), side, 0..3_usize, prop::bool::ANY, prop::bool::ANY).prop_map(
         |(x, y, z, across, bridged, second)| {
@@ -48,10 +66,10 @@ pub fn boxes_with_gaps(most: i32) -> impl Strategy<Value = Complex> {
             size[across] = size[across].max(3) + if second { 2 } else { 0 };
             let gap = size[across] / 2;
             let other = (across + 1) % 3;
-            complex(size, |c| {
+            Cells(complex(size, |c| {
                 let in_gap = c[across] == gap || (second && c[across] == gap - 2);
                 !in_gap || (bridged && c[other] == 0 && c[across] == gap)
-            })
+            }))
         },
     )
 }
