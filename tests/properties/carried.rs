@@ -5,8 +5,9 @@ use glam::{DVec3, Vec3A};
 use homunculus::{
     boundary::Boundary,
     importance::{Layer, Sample, Sampling},
+    scene::{MAX_RESOLUTION, MIN_RESOLUTION},
     transfer::Binding,
-    voxel::{Complex, voxelize},
+    voxel::{Complex, Grid, voxelize},
 };
 use proptest::prelude::*;
 
@@ -51,6 +52,39 @@ fn follows(boundary: &Boundary, complex: &Complex, binding: &Binding) -> Result<
 /// Whether every value is within the range; `None` where it is.
 fn outside(values: &[f32], low: f32, high: f32) -> Option<usize> {
     values.iter().position(|&f| !(low..=high).contains(&f))
+}
+
+/// The vertex that lies on or beyond the lattice's outer faces, if any; or that the resolution is another one.
+fn beyond(boundary: &Boundary, grid: &Grid, resolution: u32) -> Result<(), String> {
+    if grid.cells.max_element() != resolution {
+        return Err(format!("{} cells at resolution {resolution}", grid.cells));
+    }
+    let at = |p: &DVec3| grid.lattice_from_source(*p);
+    let out = |p: &DVec3| p.min_element() <= 0.0 || (grid.cells.as_dvec3() - *p).min_element() <= 0.0;
+    boundary.positions.iter().map(at).find(out).map_or(Ok(()), |p| Err(format!("{p} is beyond {}", grid.cells)))
+}
+
+proptest! {
+    #![proptest_config(cases(64))]
+
+    #[test]
+    fn the_grid_holds_the_boundary(extent in prop::array::uniform3(0.01_f64..10.0), place in prop::array::uniform3(-5.0_f64..5.0)) {
+        let place = DVec3::from(place);
+        let boundary = cuboids("box", &[(place.to_array(), (place + DVec3::from(extent)).to_array())]);
+        for resolution in MIN_RESOLUTION..=MAX_RESOLUTION {
+            let mut grid = Grid::around(&boundary, resolution).unwrap();
+            prop_assert_eq!(beyond(&boundary, &grid, resolution), Ok(()), "{}", resolution);
+            // Sabotage: half a cell aside.
+            grid.origin.z -= 0.5 * grid.cell_size;
+            prop_assert!(extent[2] < extent[0].max(extent[1]) || beyond(&boundary, &grid, resolution).is_err());
+        }
+    }
+}
+
+#[test]
+fn a_box_of_side_one_fits_at_resolution_15() {
+    let cube = cuboids("cube", &[([0.0; 3], [1.0; 3])]);
+    assert_eq!(beyond(&cube, &Grid::around(&cube, 15).unwrap(), 15), Ok(()));
 }
 
 proptest! {
