@@ -1,6 +1,8 @@
 //! Contract: the same bits for any number of threads. Positions of all frames, importance and every count are equal with
 //! 1, 2, 3 and 7 threads, because loops gather and sums are taken over chunks of fixed size in order.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests panic and speak as tests do")]
+
 mod common;
 
 use common::{Random, cuboids, shared, warp};

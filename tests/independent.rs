@@ -1,6 +1,8 @@
 //! Contract judged by others: where MeshLib (PyPI `meshlib`) finds no self-intersection in the input, it finds none in the
 //! warped mesh as written. Says `skipped` where Python or MeshLib is missing.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests panic and speak as tests do")]
+
 mod common;
 
 use std::path::{Path, PathBuf};

@@ -1,6 +1,8 @@
 //! Contract at the edges of what may come: any unit, any place, any sheet, either end of the resolution. A certified warp,
 //! or one sentence; in no case longer than a few seconds.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests panic and speak as tests do")]
+
 mod common;
 
 use std::path::Path;

@@ -1,6 +1,8 @@
 //! Contract where growth is in its own way: a fist, the prongs of a U, two loose bars, a coil, a ring of beads. All of
 //! them grow, as far as there is room or by moving out of the way, and every frame is certified; Eq. 1 alone crosses.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests panic and speak as tests do")]
+
 mod common;
 
 use std::collections::HashMap;
