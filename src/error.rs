@@ -35,6 +35,16 @@ impl Error {
         Self::Input(sentence.into())
     }
 
+    /// A file that cannot be read.
+    pub fn reading(path: &Path, source: std::io::Error) -> Self {
+        Self::File { path: path.into(), what: "cannot read", source }
+    }
+
+    /// A file that cannot be written.
+    pub fn writing(path: &Path, source: std::io::Error) -> Self {
+        Self::File { path: path.into(), what: "cannot write", source }
+    }
+
     /// A bad input in a file, as `file: sentence`.
     pub fn in_file(path: &Path, sentence: impl std::fmt::Display) -> Self {
         Self::Input(format!("{}: {sentence}", path.display()))

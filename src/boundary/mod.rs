@@ -33,6 +33,7 @@ use crate::error::{Error, Result};
 pub(crate) use format::Kind;
 pub(crate) use obj::{ObjText, face_corners};
 pub(crate) use off::{OffText, content as off_content};
+pub(crate) use soup::Sets;
 pub(crate) use source::Source;
 pub(crate) use stl::StlKind;
 

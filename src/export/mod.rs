@@ -19,6 +19,7 @@ pub(crate) mod normals;
 mod obj;
 mod off;
 mod ply;
+pub mod report;
 mod stl;
 mod table;
 

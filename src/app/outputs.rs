@@ -1,0 +1,114 @@
+//! Where results go: decided and checked before the work begins.
+
+use std::path::{Path, PathBuf};
+
+use super::options::WarpOptions;
+use crate::scene::{Scene, Source};
+use crate::{Error, Result};
+
+/// Formats a mesh can be written in.
+const MESH_EXTENSIONS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
+
+/// The files to write.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Outputs {
+    pub mesh: Option<PathBuf>,
+    pub growth: Option<PathBuf>,
+    pub report: Option<PathBuf>,
+    pub scene: Option<PathBuf>,
+}
+
+impl Outputs {
+    /// The files that the options name; a warped mesh beside the user where they name none.
+    ///
+    /// # Errors
+    /// If a file could not be written at the end, or would overwrite an input or another output.
+    pub fn of(options: &WarpOptions, scene: &Scene) -> Result<Self> {
+        let nothing_named = options.output.is_none() && options.growth.is_none() && options.report.is_none();
+        let outputs = Self {
+            mesh: options.output.clone().or_else(|| nothing_named.then(|| default_mesh(&scene.source))),
+            growth: options.growth.clone(),
+            report: options.report.clone(),
+            scene: options.save_scene.clone(),
+        };
+        check_extension(&outputs.mesh, "-o", &MESH_EXTENSIONS)?;
+        check_extension(&outputs.growth, "--growth", &["glb"])?;
+        check_extension(&outputs.report, "--report", &["json"])?;
+        check_extension(&outputs.scene, "--save-scene", &["ron"])?;
+
+        let mut taken: Vec<PathBuf> = scene.files().into_iter().map(identity).collect();
+        for path in outputs.all() {
+            check_place(path)?;
+            let identity = identity(path);
+            if taken.contains(&identity) {
+                let sentence = "it is an input or another output of this run; give the result another name";
+                return Err(Error::in_file(path, sentence));
+            }
+            taken.push(identity);
+        }
+        Ok(outputs)
+    }
+
+    /// A report is due for a result that is not certified: where it was ordered, else beside the result.
+    pub fn report_beside(&self) -> Option<PathBuf> {
+        let beside = || self.mesh.as_ref().or(self.growth.as_ref()).map(|path| path.with_extension("report.json"));
+        self.report.clone().or_else(beside)
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Path> {
+        [&self.mesh, &self.growth, &self.report, &self.scene].into_iter().flatten().map(PathBuf::as_path)
+    }
+}
+
+/// `NAME-warped.EXT` in the working directory, in the input's format where it can be written.
+fn default_mesh(source: &Source) -> PathBuf {
+    let (name, extension) = match source {
+        Source::Gallery(name) => (name.clone(), None),
+        Source::File(path) => {
+            let name = path.file_stem().map_or_else(|| "mesh".into(), |stem| stem.to_string_lossy().into_owned());
+            (name, extension(path))
+        }
+    };
+    let extension = extension.filter(|e| MESH_EXTENSIONS.contains(&e.as_str())).unwrap_or_else(|| "glb".into());
+    // A gallery name comes from the user: only its last part may become a file name.
+    let name = name.rsplit(['/', '\\']).next().unwrap_or("mesh").to_owned();
+    PathBuf::from(format!("{name}-warped.{extension}"))
+}
+
+fn extension(path: &Path) -> Option<String> {
+    Some(path.extension()?.to_str()?.to_ascii_lowercase())
+}
+
+fn check_extension(path: &Option<PathBuf>, option: &str, known: &[&str]) -> Result<()> {
+    let Some(path) = path else { return Ok(()) };
+    if extension(path).is_some_and(|e| known.contains(&e.as_str())) {
+        return Ok(());
+    }
+    let known = known.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(", ");
+    Err(Error::in_file(path, format!("{option} wants a file that ends in {known}")))
+}
+
+/// Whether a file can come to lie there.
+fn check_place(path: &Path) -> Result<()> {
+    if path.is_dir() {
+        return Err(Error::in_file(path, "it is a directory; give a file"));
+    }
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            Err(Error::in_file(path, format!("the directory {} does not exist; create it first", folder.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The same path for the same file, whether it exists or not.
+fn identity(path: &Path) -> PathBuf {
+    if let Ok(real) = path.canonicalize() {
+        return real;
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (folder.canonicalize(), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.into(),
+    }
+}

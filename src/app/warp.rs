@@ -1,0 +1,137 @@
+//! `homunculus warp`: from a scene to certified files.
+
+use std::path::{Path, PathBuf};
+
+use super::options::{Colour, WarpOrder};
+use super::outputs::Outputs;
+use super::{Verdict, cancel, note, progress, say};
+use crate::boundary::{self, Boundary};
+use crate::export::report::{self, Report};
+use crate::export::{self, GrowthFrame};
+use crate::importance::{self, Layer, Stack};
+use crate::scene::{Scene, Source};
+use crate::schedule::{self, Outcome, Settings};
+use crate::{Error, Result, gallery};
+
+/// Warps, writes and says how it went.
+pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
+    let options = &order.options;
+    let scene = order.scene()?;
+    let outputs = Outputs::of(options, &scene)?;
+    if let Some(threads) = options.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
+        pool.build_global().map_err(|e| Error::Fault(format!("starting {threads} threads: {e}")))?;
+    }
+    cancel::listen();
+
+    let mut boundary = open(&scene.source)?;
+    let layers = layers(&scene, &boundary);
+    let stack = Stack::load(&layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
+    if let Some(regions) = stack.regions() {
+        boundary.regions = Some(regions.clone());
+    }
+    let warnings = warnings(&scene, &boundary, &stack);
+    if !options.quiet {
+        warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
+    }
+
+    let settings = Settings {
+        resolution: scene.resolution,
+        fidelity: scene.fidelity,
+        keys: scene.keys,
+        reference: options.reference.map(Into::into),
+    };
+    let watcher = progress::watcher(options.quiet);
+    let outcome = schedule::warp(&boundary, &stack, &settings, &watcher);
+    watcher.finish();
+    let outcome = outcome?;
+    if cancel::asked() {
+        return Err(Error::Cancelled);
+    }
+
+    let report = Report::of(&scene, &settings, &stack, &outcome, warnings);
+    let written = write(&outputs, options.colour, options.seconds, &scene, &boundary, &outcome, &report)?;
+    if !options.quiet {
+        say(&summary(&report, &written));
+    }
+    Ok(if report.certified() { Verdict::Done } else { Verdict::NotCertified })
+}
+
+/// The boundary a source names.
+pub(super) fn open(source: &Source) -> Result<Boundary> {
+    match source {
+        Source::File(path) => boundary::read(path),
+        Source::Gallery(name) => gallery::open(name),
+    }
+}
+
+/// The scene's layers. A built-in model brings its own importance, an attribute of that name, for when none is ordered.
+fn layers(scene: &Scene, boundary: &Boundary) -> Vec<Layer> {
+    let own = Layer::Attribute { name: "importance".into(), range: None };
+    let is_gallery = matches!(scene.source, Source::Gallery(_));
+    if is_gallery && scene.layers.is_empty() && boundary.attributes.iter().any(|a| a.name == "importance") {
+        return vec![own];
+    }
+    scene.layers.clone()
+}
+
+fn warnings(scene: &Scene, boundary: &Boundary, stack: &Stack) -> Vec<String> {
+    let mut warnings = boundary.warnings.clone();
+    warnings.extend_from_slice(stack.warnings());
+    if stack.is_uniform() && scene.base == 1.0 {
+        warnings.push(
+            "no importance was given, so the shape stays as it is; see --sphere in homunculus warp --help".into(),
+        );
+    }
+    warnings
+}
+
+/// Writes what was ordered, each file whole or not at all. Returns where.
+fn write(
+    outputs: &Outputs,
+    colour: Option<Colour>,
+    seconds: f32,
+    scene: &Scene,
+    boundary: &Boundary,
+    outcome: &Outcome,
+    report: &Report,
+) -> Result<Vec<PathBuf>> {
+    let by_importance = importance::colours(&outcome.importance);
+    let colours = |default| (colour.unwrap_or(default) == Colour::Importance).then_some(by_importance.as_slice());
+    let mut written = Vec::new();
+    if let Some(path) = &outputs.mesh {
+        let last = outcome.frames.last().ok_or_else(|| Error::Fault("the film is empty".into()))?;
+        export::mesh(boundary, &last.positions, colours(Colour::Original), path)?;
+        written.push(path.clone());
+    }
+    if let Some(path) = &outputs.growth {
+        let frames: Vec<_> =
+            outcome.frames.iter().map(|f| GrowthFrame { lambda: f.lambda, positions: &f.positions }).collect();
+        export::growth(boundary, &frames, colours(Colour::Importance), seconds, path)?;
+        written.push(path.clone());
+    }
+    let report_path = if report.certified() { outputs.report.clone() } else { outputs.report_beside() };
+    if let Some(path) = report_path {
+        report::write(report, &path)?;
+        written.push(path);
+    }
+    if let Some(path) = &outputs.scene {
+        scene.save(path)?;
+        written.push(path.clone());
+    }
+    Ok(written)
+}
+
+/// One line for a person.
+fn summary(report: &Report, written: &[PathBuf]) -> String {
+    let certificate = &report.certificate;
+    let verdict = if certificate.certified { "certified" } else { "NOT CERTIFIED" };
+    let files = written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
+    format!(
+        "{verdict}: {} inverted, {} crossings in {} frames; size error p95 {:.1} %; written: {files}",
+        certificate.inverted,
+        certificate.crossings,
+        certificate.frames.len(),
+        report.fidelity.p95 * 100.0,
+    )
+}

@@ -1,0 +1,201 @@
+//! A tree of boxes over a set of triangles, built once from rest positions and refitted to every state.
+//!
+//! Warping keeps neighbours together, so the rest order stays good; refitting is one pass over the boxes.
+
+use glam::Vec3A;
+use rayon::prelude::*;
+
+/// Triangles per leaf: four boxes fit a cache line pair; more tests pairs in vain, fewer deepens the tree.
+const LEAF: usize = 4;
+
+/// Leaves per parallel task.
+const LEAVES_PER_TASK: usize = 64;
+
+/// An axis-aligned box.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds {
+    /// Lowest corner.
+    pub low: Vec3A,
+    /// Highest corner.
+    pub high: Vec3A,
+}
+
+impl Bounds {
+    /// The box that holds nothing.
+    pub const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
+
+    /// The box of some points.
+    pub fn of(points: impl IntoIterator<Item = Vec3A>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| Self { low: b.low.min(p), high: b.high.max(p) })
+    }
+
+    fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Grown on every side.
+    pub fn grown(self, margin: f32) -> Self {
+        Self { low: self.low - margin, high: self.high + margin }
+    }
+
+    /// Whether two closed boxes meet.
+    #[inline]
+    pub fn meets(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+}
+
+/// The tree: a complete binary tree over leaves of [`LEAF`] primitives, in heap order.
+#[derive(Debug, Clone)]
+pub struct Tree {
+    /// Primitive indices, leaf by leaf.
+    order: Vec<u32>,
+    /// Boxes of primitives, in `order`.
+    boxes: Vec<Bounds>,
+    /// Heap of boxes: node k has children 2k and 2k + 1; the last `leaves` are the leaves.
+    heap: Vec<Bounds>,
+    leaves: usize,
+}
+
+impl Tree {
+    /// A tree over primitives with the given centres, split at medians along the widest axis.
+    pub fn new(centres: &[Vec3A]) -> Self {
+        let leaves = centres.len().div_ceil(LEAF).next_power_of_two();
+        let mut order: Vec<u32> = (0..centres.len() as u32).collect();
+        split(&mut order, centres, leaves);
+        Self { boxes: vec![Bounds::EMPTY; order.len()], heap: vec![Bounds::EMPTY; 2 * leaves], order, leaves }
+    }
+
+    /// Primitives of leaf `l`, as a range of `order`.
+    fn leaf(&self, l: usize) -> std::ops::Range<usize> {
+        // The same proportional cuts as `split`.
+        let n = self.order.len();
+        l * n / self.leaves..(l + 1) * n / self.leaves
+    }
+
+    /// Takes the boxes of the present state.
+    pub fn refit(&mut self, bounds: impl Fn(u32) -> Bounds + Sync) {
+        self.boxes.par_iter_mut().zip(&self.order).with_min_len(1024).for_each(|(b, &p)| *b = bounds(p));
+        for l in 0..self.leaves {
+            let range = self.leaf(l);
+            self.heap[self.leaves + l] = self.boxes[range].iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
+        }
+        for k in (1..self.leaves).rev() {
+            self.heap[k] = self.heap[2 * k].union(self.heap[2 * k + 1]);
+        }
+    }
+
+    /// All pairs of primitives whose boxes meet, each once, in an order that does not depend on threads.
+    pub fn pairs(&self) -> Vec<(u32, u32)> {
+        let tasks: Vec<Vec<(u32, u32)>> = (0..self.leaves.div_ceil(LEAVES_PER_TASK))
+            .into_par_iter()
+            .map(|task| {
+                let mut pairs = Vec::new();
+                for l in task * LEAVES_PER_TASK..((task + 1) * LEAVES_PER_TASK).min(self.leaves) {
+                    self.pairs_of_leaf(l, &mut pairs);
+                }
+                pairs
+            })
+            .collect();
+        tasks.concat()
+    }
+
+    fn pairs_of_leaf(&self, l: usize, pairs: &mut Vec<(u32, u32)>) {
+        let range = self.leaf(l);
+        let own = &self.heap[self.leaves + l];
+        for a in range.clone() {
+            for b in a + 1..range.end {
+                if self.boxes[a].meets(&self.boxes[b]) {
+                    pairs.push((self.order[a], self.order[b]));
+                }
+            }
+        }
+        // Leaves to the right of this one only: climb, and look into each right sibling.
+        let mut node = self.leaves + l;
+        while node > 1 {
+            if node & 1 == 0 {
+                self.descend(node + 1, own, range.clone(), pairs);
+            }
+            node /= 2;
+        }
+    }
+
+    fn descend(&self, node: usize, own: &Bounds, range: std::ops::Range<usize>, pairs: &mut Vec<(u32, u32)>) {
+        if !self.heap[node].meets(own) {
+            return;
+        }
+        if node < self.leaves {
+            self.descend(2 * node, own, range.clone(), pairs);
+            self.descend(2 * node + 1, own, range, pairs);
+            return;
+        }
+        for b in self.leaf(node - self.leaves) {
+            if !self.boxes[b].meets(own) {
+                continue;
+            }
+            for a in range.clone() {
+                if self.boxes[a].meets(&self.boxes[b]) {
+                    pairs.push((self.order[a], self.order[b]));
+                }
+            }
+        }
+    }
+}
+
+/// Orders `part` so that its proportional halves are apart along the widest axis, down to `leaves` parts.
+///
+/// Cuts must match [`Tree::leaf`]: `leaf` cuts the whole at `l n / leaves`, so the recursion carries leaf numbers.
+fn split(order: &mut [u32], centres: &[Vec3A], leaves: usize) {
+    let n = order.len();
+    split_range(order, 0, centres, n, 0, leaves, leaves);
+}
+
+fn split_range(part: &mut [u32], offset: usize, centres: &[Vec3A], n: usize, first: usize, last: usize, leaves: usize) {
+    if last - first <= 1 || part.len() <= 1 {
+        return;
+    }
+    let middle = (first + last) / 2;
+    let cut = middle * n / leaves - offset;
+    let bounds = Bounds::of(part.iter().map(|&p| centres[p as usize]));
+    let extent = bounds.high - bounds.low;
+    let axis = if extent.x >= extent.y && extent.x >= extent.z {
+        0
+    } else if extent.y >= extent.z {
+        1
+    } else {
+        2
+    };
+    if cut > 0 && cut < part.len() {
+        part.select_nth_unstable_by(cut, |&a, &b| {
+            centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b))
+        });
+    }
+    let (left, right) = part.split_at_mut(cut.min(part.len()));
+    let (left_offset, right_offset) = (offset, offset + left.len());
+    rayon::join(
+        || split_range(left, left_offset, centres, n, first, middle, leaves),
+        || split_range(right, right_offset, centres, n, middle, last, leaves),
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn pairs_are_those_of_brute_force(points in prop::collection::vec((0.0_f32..10.0, 0.0_f32..10.0, 0.0_f32..10.0, 0.1_f32..2.0), 0..120)) {
+            let bounds: Vec<Bounds> = points.iter().map(|&(x, y, z, r)| Bounds { low: Vec3A::new(x, y, z), high: Vec3A::new(x, y, z) + r }).collect();
+            let centres: Vec<Vec3A> = bounds.iter().map(|b| (b.low + b.high) * 0.5).collect();
+            let mut tree = Tree::new(&centres);
+            tree.refit(|p| bounds[p as usize]);
+            let mut found: Vec<(u32, u32)> = tree.pairs().into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
+            found.sort_unstable();
+            let n = bounds.len() as u32;
+            let expected: Vec<(u32, u32)> = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)))
+                .filter(|&(a, b)| bounds[a as usize].meets(&bounds[b as usize])).collect();
+            prop_assert_eq!(found, expected);
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! 3.3  Collision optimization (Eq. 2): grow by λ, fit every cell, keep apart, never step across.
+//!
+//! # Theory
+//! Local–global iteration on `Σ_c Σ_{e∈c} ‖Δ''_e − A_c Δ_e‖²`: the [local] step chooses the target `A_c` of every cell,
+//! the [global](global_step) step is one Laplacian solve for the positions, [contact] adds springs between boundary
+//! nodes that come too close, and the [guard] lets only injective steps through.
+//!
+//! # Changes from the paper
+//! Fig. 5 projects edge lengths one by one and diverges as printed (see `reference`). Its ingredients stay: stepwise
+//! scaling by λ, spheres of radius r_i found by spatial hashing. The guard is new: it keeps the promise.
+//!
+//! # Practice
+//! One multigrid cycle is enough for the global step where nothing touches; with contacts, which the cycle does not
+//! know, a few conjugate gradient steps are taken. All loops gather or sum in fixed chunks: same bits for any threads.
+
+pub mod contact;
+pub mod growth;
+pub mod guard;
+pub mod local;
+pub mod plugin;
+
+use glam::{DMat3, DVec3, Mat3A, Quat, Vec3A};
+use rayon::prelude::*;
+
+use crate::{
+    edge::{CHUNK, Multigrid, Weights, dot, preconditioned},
+    voxel::Complex,
+};
+pub use contact::Contacts;
+pub use growth::Growth;
+pub use guard::{Guarded, Shell};
+
+/// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing
+/// (measured: the rotations, not the solve, are what converges slowly).
+const GLOBAL_STEPS: [u32; 2] = [1, 3];
+
+/// No node moves further than this in one iteration, in cells: half a cell, so that a wall of one cell is not skipped.
+const STEP_LIMIT: f32 = 0.5;
+
+/// The constant part of the collision optimization: what depends on complex and importance alone.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// `[cells]` f_c, mean of its nodes.
+    pub importance: Vec<f32>,
+    /// μ in 0..=1.
+    pub fidelity: f32,
+    operator: Multigrid,
+    boundary_nodes: Vec<u32>,
+}
+
+impl Problem {
+    /// Prepares for a complex and its `[nodes]` importance.
+    pub fn new(complex: &Complex, importance: &[f32], fidelity: f32) -> Self {
+        Self {
+            importance: cell_importance(complex, importance),
+            fidelity,
+            operator: Multigrid::new(complex, Weights::Cells),
+            boundary_nodes: (0..complex.nodes() as u32).filter(|&i| complex.on_boundary[i as usize]).collect(),
+        }
+    }
+
+    /// Takes another importance; the complex stays.
+    pub fn set_importance(&mut self, complex: &Complex, importance: &[f32]) {
+        self.importance = cell_importance(complex, importance);
+    }
+}
+
+/// `[cells]` mean importance of the eight nodes.
+pub fn cell_importance(complex: &Complex, importance: &[f32]) -> Vec<f32> {
+    complex.corners.par_iter().map(|c| c.iter().map(|&i| importance[i as usize]).sum::<f32>() / 8.0).collect()
+}
+
+/// What is asked for at one λ.
+#[derive(Debug, Clone, Default)]
+pub struct Asked {
+    /// `[cells]` s_c = 1 + λ (f_c − 1).
+    pub size: Vec<f32>,
+    /// `[nodes]` r_i, the least target length of the edges at i.
+    pub radius: Vec<f32>,
+}
+
+/// Grow: the sizes and radii asked for at λ.
+pub fn grow(complex: &Complex, problem: &Problem, lambda: f32) -> Asked {
+    let size: Vec<f32> = problem.importance.iter().map(|f| 1.0 + lambda * (f - 1.0)).collect();
+    let radius = complex
+        .cells_around
+        .par_iter()
+        .with_min_len(CHUNK)
+        .map(|cells| cells.iter().filter(|&&c| c != u32::MAX).map(|&c| size[c as usize]).fold(f32::INFINITY, f32::min))
+        .collect();
+    Asked { size, radius }
+}
+
+/// Local step: `[cells]` targets A_c, rotations brought up to date.
+pub fn local_step(
+    complex: &Complex,
+    problem: &Problem,
+    asked: &Asked,
+    positions: &[Vec3A],
+    rotations: &mut Vec<Quat>,
+    targets: &mut Vec<Mat3A>,
+) {
+    rotations.resize(complex.cells.len(), Quat::IDENTITY);
+    rotations
+        .par_iter_mut()
+        .zip(&complex.corners)
+        .zip(&asked.size)
+        .with_min_len(CHUNK / 4)
+        .map(|((q, corners), &size)| {
+            let (target, turned) = local::target(corners.map(|c| positions[c as usize]), *q, size, problem.fidelity);
+            *q = turned;
+            target
+        })
+        .collect_into_vec(targets);
+}
+
+/// Contact: pairs of boundary nodes that are too close now.
+pub fn contact_step(complex: &Complex, problem: &Problem, asked: &Asked, positions: &[Vec3A]) -> Contacts {
+    contact::find(complex, &problem.boundary_nodes, &asked.radius, positions)
+}
+
+/// Global step: where the nodes would like to go. Returns the proposed positions and the force left before the step
+/// (root mean square over nodes, in cells), which is zero at rest.
+pub fn global_step(
+    complex: &Complex,
+    problem: &Problem,
+    positions: &[Vec3A],
+    targets: &[Mat3A],
+    contacts: &Contacts,
+) -> (Vec<Vec3A>, f64) {
+    let mut force = Vec::new();
+    problem.operator.apply(positions, &mut force);
+    force.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(i, force)| {
+        let mut sum = -*force;
+        for (corner, &cell) in complex.cells_around[i].iter().enumerate() {
+            if cell != u32::MAX {
+                sum += targets[cell as usize] * local::CORNER[corner];
+            }
+        }
+        for c in contacts.of(i) {
+            sum += contact::CONTACT_WEIGHT * c.depth * c.direction;
+        }
+        *force = sum;
+    });
+    let strength = (dot(&force, &force) / force.len() as f64).sqrt();
+    let with_contacts = |p: &[Vec3A], q: &mut Vec<Vec3A>| {
+        problem.operator.apply(p, q);
+        if !contacts.is_empty() {
+            q.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(i, q)| {
+                for c in contacts.of(i) {
+                    *q += contact::CONTACT_WEIGHT * (p[i] - p[c.other as usize]);
+                }
+            });
+        }
+    };
+    let mut step = vec![Vec3A::ZERO; complex.nodes()];
+    let steps = GLOBAL_STEPS[usize::from(!contacts.is_empty())];
+    preconditioned(&problem.operator, with_contacts, &mut force, &mut step, 0.0, steps);
+    remove_rigid_motion(positions, &mut step);
+    let proposed = positions.par_iter().zip(&step).with_min_len(CHUNK).map(|(x, d)| *x + *d).collect();
+    (proposed, strength)
+}
+
+/// Takes the common translation and rotation out of a step: the energy does not know them, so they would only drift.
+fn remove_rigid_motion(positions: &[Vec3A], step: &mut [Vec3A]) {
+    let n = positions.len().max(1) as f64;
+    let sum = |f: &(dyn Fn(usize) -> DVec3 + Sync)| -> DVec3 {
+        let parts: Vec<DVec3> = (0..positions.len().div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|c| (c * CHUNK..((c + 1) * CHUNK).min(positions.len())).map(f).sum())
+            .collect();
+        parts.into_iter().sum()
+    };
+    let centre = sum(&|i| positions[i].as_dvec3()) / n;
+    let drift = sum(&|i| step[i].as_dvec3()) / n;
+    let momentum = sum(&|i| (positions[i].as_dvec3() - centre).cross(step[i].as_dvec3() - drift));
+    let squares = sum(&|i| {
+        let r = positions[i].as_dvec3() - centre;
+        r * r
+    });
+    let products = sum(&|i| {
+        let r = positions[i].as_dvec3() - centre;
+        DVec3::new(r.y * r.z, r.z * r.x, r.x * r.y)
+    });
+    let inertia = DMat3::from_cols(
+        DVec3::new(squares.y + squares.z, -products.z, -products.y),
+        DVec3::new(-products.z, squares.z + squares.x, -products.x),
+        DVec3::new(-products.y, -products.x, squares.x + squares.y),
+    );
+    let spin = if inertia.determinant() > 1.0e-9 { inertia.inverse() * momentum } else { DVec3::ZERO };
+    let (centre, drift, spin) = (centre.as_vec3a(), drift.as_vec3a(), spin.as_vec3a());
+    step.par_iter_mut().zip(positions).with_min_len(CHUNK).for_each(|(d, x)| *d -= drift + spin.cross(*x - centre));
+}
+
+/// Guard: takes of the proposed step what stays injective. Returns the new positions' largest motion in cells and what
+/// was held back.
+pub fn guard_step(
+    complex: &Complex,
+    asked: &Asked,
+    shells: &mut [Shell],
+    positions: &mut Vec<Vec3A>,
+    mut proposed: Vec<Vec3A>,
+) -> (f32, Guarded) {
+    guard::limit(positions, &mut proposed, STEP_LIMIT);
+    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed);
+    let motion = positions
+        .par_iter()
+        .zip(&proposed)
+        .with_min_len(CHUNK)
+        .map(|(a, b)| (*a - *b).length())
+        .reduce(|| 0.0, f32::max);
+    *positions = proposed;
+    (motion, guarded)
+}

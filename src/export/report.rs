@@ -1,0 +1,292 @@
+//! The report: what was asked, achieved and proven, as JSON. Others script by these keys; they stay.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::write_atomically;
+use crate::diagnostics::peak_memory_bytes;
+use crate::importance::Stack;
+use crate::scene::{Scene, memory_estimate};
+use crate::schedule::{Counts, DomainSummary, InputSummary, Outcome, Reference, Settings};
+use crate::{Error, Result};
+
+/// All that is written about a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// The source as ordered.
+    pub source: String,
+    /// How it was warped.
+    pub settings: SettingsReport,
+    /// What was read.
+    pub input: InputReport,
+    /// What was voxelized.
+    pub domain: DomainReport,
+    /// Eq. 1 alone, where it was looked at.
+    pub classic: Option<ClassicReport>,
+    /// What was proven.
+    pub certificate: CertificateReport,
+    /// Size asked against size achieved.
+    pub fidelity: FidelityReport,
+    /// Conformal distortion, ≥ 1.
+    pub distortion: DistortionReport,
+    /// Wall time by stage.
+    pub seconds: Map<String, Value>,
+    /// The most memory the process held, where the system tells.
+    pub peak_memory_bytes: Option<u64>,
+    /// How many values of importance `--clamp` changed.
+    pub clamped: usize,
+    /// Sentences the user should read.
+    pub warnings: Vec<String>,
+    /// Version of this program.
+    pub version: &'static str,
+}
+
+/// How it was warped.
+#[derive(Debug, Clone, Serialize)]
+pub struct SettingsReport {
+    /// Cells along the longest axis.
+    pub resolution: u32,
+    /// μ
+    pub fidelity: f32,
+    /// Importance below all layers.
+    pub base: f32,
+    /// How many layers lie over it.
+    pub layers: usize,
+    /// Keyframes of the growth.
+    pub keys: usize,
+    /// `fig5`, `eq1` or null.
+    pub reference: Option<&'static str>,
+}
+
+/// What was read.
+#[derive(Debug, Clone, Serialize)]
+pub struct InputReport {
+    /// Vertices in the file.
+    pub vertices: usize,
+    /// Triangles, polygons being triangulated.
+    pub triangles: usize,
+    /// Connected pieces of surface.
+    pub components: usize,
+    /// Loops of edges with one triangle.
+    pub boundary_loops: usize,
+    /// Pairs of triangles that cross.
+    pub self_intersections: usize,
+}
+
+/// What was voxelized.
+#[derive(Debug, Clone, Serialize)]
+pub struct DomainReport {
+    /// Cells along the longest axis.
+    pub resolution: u32,
+    /// Edge of a cell in source units.
+    pub cell_size: f64,
+    /// Inside cells.
+    pub cells: usize,
+    /// Lattice nodes.
+    pub nodes: usize,
+    /// Lattice edges.
+    pub edges: usize,
+    /// Tetrahedra.
+    pub elements: usize,
+    /// Cells that may glue two sheets of the surface.
+    pub suspected_welds: usize,
+    /// Memory to warp it, about.
+    pub memory_estimate_bytes: u64,
+}
+
+/// What Eq. 1 alone leaves broken.
+#[derive(Debug, Clone, Serialize)]
+pub struct ClassicReport {
+    /// Inverted elements.
+    pub inverted: usize,
+    /// Pairs of boundary faces that cross.
+    pub crossings: usize,
+}
+
+/// What was proven, over all frames: the greatest counts and the least ratio.
+#[derive(Debug, Clone, Serialize)]
+pub struct CertificateReport {
+    /// Whether every frame is free of both.
+    pub certified: bool,
+    /// Inverted elements.
+    pub inverted: usize,
+    /// Pairs of the complex's boundary faces that cross.
+    pub crossings: usize,
+    /// Pairs of the warped mesh's own triangles that cross, in the last frame.
+    pub surface_crossings: usize,
+    /// Least volume of an element over its rest volume.
+    pub min_volume_ratio: f64,
+    /// Each frame.
+    pub frames: Vec<FrameReport>,
+}
+
+/// What was proven of one frame.
+#[derive(Debug, Clone, Serialize)]
+pub struct FrameReport {
+    /// Growth.
+    pub lambda: f32,
+    /// Inverted elements.
+    pub inverted: usize,
+    /// Pairs of boundary faces that cross.
+    pub crossings: usize,
+}
+
+/// Size asked against size achieved; errors are max(s/f, f/s) − 1.
+#[derive(Debug, Clone, Serialize)]
+pub struct FidelityReport {
+    /// μ
+    pub mu: f32,
+    /// Half of the volume is nearer to the size asked for.
+    pub median: f64,
+    /// 95 % of the volume are nearer to it.
+    pub p95: f64,
+    /// The worst.
+    pub max: f64,
+    /// By named region.
+    pub regions: Vec<RegionReport>,
+}
+
+/// A region's size.
+#[derive(Debug, Clone, Serialize)]
+pub struct RegionReport {
+    /// Its name.
+    pub name: String,
+    /// Linear size factor asked for.
+    pub asked: f64,
+    /// Linear size factor achieved.
+    pub achieved: f64,
+}
+
+/// Conformal distortion, ≥ 1.
+#[derive(Debug, Clone, Serialize)]
+pub struct DistortionReport {
+    /// Half is less.
+    pub median: f64,
+    /// 95 % are less.
+    pub p95: f64,
+    /// 99 % are less.
+    pub p99: f64,
+}
+
+impl Report {
+    /// The report of a run.
+    pub fn of(scene: &Scene, settings: &Settings, stack: &Stack, outcome: &Outcome, warnings: Vec<String>) -> Self {
+        Self {
+            source: scene.source.to_string(),
+            settings: SettingsReport {
+                resolution: settings.resolution,
+                fidelity: settings.fidelity,
+                base: scene.base,
+                layers: scene.layers.len(),
+                keys: settings.keys,
+                reference: settings.reference.map(|reference| match reference {
+                    Reference::Fig5 => "fig5",
+                    Reference::Eq1 => "eq1",
+                }),
+            },
+            input: (&outcome.input).into(),
+            domain: (&outcome.domain).into(),
+            classic: outcome
+                .classic
+                .as_ref()
+                .map(|&Counts { inverted, crossings }| ClassicReport { inverted, crossings }),
+            certificate: outcome.into(),
+            fidelity: outcome.into(),
+            distortion: outcome.into(),
+            seconds: outcome.seconds.iter().map(|(stage, seconds)| ((*stage).into(), (*seconds).into())).collect(),
+            peak_memory_bytes: peak_memory_bytes(),
+            clamped: stack.clamped(),
+            warnings,
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+
+    /// Whether every frame is proven free of inverted elements and crossings.
+    pub fn certified(&self) -> bool {
+        self.certificate.certified
+    }
+}
+
+/// Writes a report, whole or not at all.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write(report: &Report, path: &Path) -> Result<()> {
+    let mut text = serde_json::to_vec_pretty(report).map_err(|e| Error::Fault(format!("report to JSON: {e}")))?;
+    text.push(b'\n');
+    write_atomically(path, |file| file.write_all(&text))
+}
+
+impl From<&InputSummary> for InputReport {
+    fn from(input: &InputSummary) -> Self {
+        Self {
+            vertices: input.vertices,
+            triangles: input.triangles,
+            components: input.components,
+            boundary_loops: input.boundary_loops,
+            self_intersections: input.self_intersections,
+        }
+    }
+}
+
+impl From<&DomainSummary> for DomainReport {
+    fn from(domain: &DomainSummary) -> Self {
+        Self {
+            resolution: domain.resolution,
+            cell_size: domain.cell_size,
+            cells: domain.cells,
+            nodes: domain.nodes,
+            edges: domain.edges,
+            elements: domain.elements,
+            suspected_welds: domain.suspected_welds,
+            memory_estimate_bytes: memory_estimate(domain.cells as f64) as u64,
+        }
+    }
+}
+
+impl From<&Outcome> for CertificateReport {
+    fn from(outcome: &Outcome) -> Self {
+        let all = || outcome.frames.iter().map(|frame| &frame.certificate).chain([&outcome.certificate]);
+        let frames = outcome.frames.iter().map(|frame| FrameReport {
+            lambda: frame.lambda,
+            inverted: frame.certificate.inverted(),
+            crossings: frame.certificate.crossings(),
+        });
+        Self {
+            certified: all().all(|certificate| certificate.certified()),
+            inverted: all().map(|certificate| certificate.inverted()).max().unwrap_or(0),
+            crossings: all().map(|certificate| certificate.crossings()).max().unwrap_or(0),
+            surface_crossings: outcome.certificate.surface_crossings(),
+            min_volume_ratio: all().map(|certificate| certificate.min_volume_ratio()).fold(f64::INFINITY, f64::min),
+            frames: frames.collect(),
+        }
+    }
+}
+
+impl From<&Outcome> for FidelityReport {
+    fn from(outcome: &Outcome) -> Self {
+        let fidelity = &outcome.fidelity;
+        let region = |region: &crate::schedule::RegionFidelity| RegionReport {
+            name: region.name.clone(),
+            asked: region.asked,
+            achieved: region.achieved,
+        };
+        Self {
+            mu: fidelity.mu,
+            median: fidelity.median,
+            p95: fidelity.p95,
+            max: fidelity.max,
+            regions: fidelity.regions.iter().map(region).collect(),
+        }
+    }
+}
+
+impl From<&Outcome> for DistortionReport {
+    fn from(outcome: &Outcome) -> Self {
+        let distortion = &outcome.distortion;
+        Self { median: distortion.median, p95: distortion.p95, p99: distortion.p99 }
+    }
+}

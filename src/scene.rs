@@ -1,0 +1,281 @@
+//! What to warp and how: one validated struct, read from RON, command line and panels alike.
+//!
+//! A scene file:
+//! ```ron
+//! (
+//!     version: 1,
+//!     source: "body.obj",        // relative to this file, or "gallery:NAME"
+//!     base: 1.0,
+//!     layers: [
+//!         Sphere(centre: (0.7, 1.4, 0.0), radius: 0.2, value: 2.5),
+//!         Values(path: "importance.csv"),
+//!     ],
+//!     resolution: 96,
+//! )
+//! ```
+//! All but `version` and `source` may be left out. Layers apply in the order given.
+
+use std::fmt;
+use std::io::Write as _;
+use std::ops::Deref;
+use std::path::{Component, Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::diagnostics::human_bytes;
+use crate::export;
+use crate::importance::Layer;
+use crate::{Error, Result};
+
+/// The version of scene files this program writes and reads.
+pub const VERSION: u32 = 1;
+
+/// Fewest cells along the longest axis: below 8 a limb is thinner than a cell.
+pub const MIN_RESOLUTION: u32 = 8;
+
+/// Most cells along the longest axis: 256³ fills a laptop's memory.
+pub const MAX_RESOLUTION: u32 = 256;
+
+/// Most keyframes: each is a whole mesh in the growth file.
+pub const MAX_KEYS: usize = 64;
+
+/// Memory per inside cell, about: nodes, their states and solver vectors (about 160 B), 7 edges (84 B), 6 elements
+/// (120 B) and the coarser lattices (a seventh of it). Too low here lets a machine swap; too high refuses what would run.
+const BYTES_PER_CELL: f64 = 420.0;
+
+/// Where the boundary comes from, written `gallery:NAME` or as a path.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum Source {
+    /// A mesh file.
+    File(PathBuf),
+    /// A built-in model.
+    Gallery(String),
+}
+
+impl From<String> for Source {
+    fn from(text: String) -> Self {
+        match text.strip_prefix("gallery:") {
+            Some(name) => Self::Gallery(name.into()),
+            None => Self::File(text.into()),
+        }
+    }
+}
+
+impl From<Source> for String {
+    fn from(source: Source) -> Self {
+        source.to_string()
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::File(path) => write!(f, "{}", path.display()),
+            Self::Gallery(name) => write!(f, "gallery:{name}"),
+        }
+    }
+}
+
+/// A scene as written, not yet checked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Scene", deny_unknown_fields)]
+pub struct Draft {
+    /// Version of the format.
+    pub version: u32,
+    /// What to warp.
+    pub source: Source,
+    /// Importance below all layers, > 0.
+    #[serde(default = "defaults::base")]
+    pub base: f32,
+    /// Bring importance that is out of range into it, rather than refuse it.
+    #[serde(default)]
+    pub clamp: bool,
+    /// Importance, from the bottom up.
+    #[serde(default)]
+    pub layers: Vec<Layer>,
+    /// Cells along the longest axis, [`MIN_RESOLUTION`]`..=`[`MAX_RESOLUTION`].
+    #[serde(default = "defaults::resolution")]
+    pub resolution: u32,
+    /// μ in 0..=1: 0 keeps shape, 1 reaches the size asked for.
+    #[serde(default = "defaults::fidelity")]
+    pub fidelity: f32,
+    /// Keyframes of the growth, 1..=[`MAX_KEYS`].
+    #[serde(default = "defaults::keys")]
+    pub keys: usize,
+}
+
+mod defaults {
+    pub(super) fn base() -> f32 {
+        1.0
+    }
+    pub(super) fn resolution() -> u32 {
+        64
+    }
+    pub(super) fn fidelity() -> f32 {
+        0.5
+    }
+    pub(super) fn keys() -> usize {
+        8
+    }
+}
+
+impl Draft {
+    /// A scene with nothing but a source.
+    pub fn of(source: Source) -> Self {
+        Self {
+            version: VERSION,
+            source,
+            base: defaults::base(),
+            clamp: false,
+            layers: Vec::new(),
+            resolution: defaults::resolution(),
+            fidelity: defaults::fidelity(),
+            keys: defaults::keys(),
+        }
+    }
+}
+
+/// A scene that has been checked. It reads like its [`Draft`]; to change it, change a draft and check again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene(Draft);
+
+impl Deref for Scene {
+    type Target = Draft;
+
+    fn deref(&self) -> &Draft {
+        &self.0
+    }
+}
+
+impl Scene {
+    /// Checks a draft. This is the only way to make a scene.
+    ///
+    /// # Errors
+    /// One sentence with the field, its value and its range.
+    pub fn new(draft: Draft) -> Result<Self> {
+        if draft.version != VERSION {
+            let sentence = format!("scene version {} is not known; this program reads {VERSION}", draft.version);
+            return Err(Error::input(sentence));
+        }
+        check_resolution(draft.resolution)?;
+        if !(0.0..=1.0).contains(&draft.fidelity) {
+            return Err(Error::input(format!("fidelity {} is not within 0 to 1", draft.fidelity)));
+        }
+        if !(1..=MAX_KEYS).contains(&draft.keys) {
+            return Err(Error::input(format!("keys {} is not within 1 to {MAX_KEYS}", draft.keys)));
+        }
+        let base_may_be = draft.base > 0.0 && draft.base.is_finite();
+        if !(base_may_be || draft.clamp) {
+            return Err(Error::input(format!("base {} is not greater than 0 and finite", draft.base)));
+        }
+        match &draft.source {
+            Source::File(path) if path.as_os_str().is_empty() => {
+                Err(Error::input("the source is empty; give a mesh file or gallery:NAME"))
+            }
+            _ => Ok(Self(draft)),
+        }
+    }
+
+    /// Reads a scene file; its paths come out relative to the working directory.
+    ///
+    /// # Errors
+    /// Names the file, the line and what is wrong there.
+    pub fn load(path: &Path) -> Result<Self> {
+        /// What every version has.
+        #[derive(Deserialize)]
+        struct Versioned {
+            version: u32,
+        }
+        let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
+        let misread = |e: ron::error::SpannedError| {
+            Error::in_file(path, format!("line {}: {}; correct the scene there", e.span.start.line, e.code))
+        };
+        let version = format().from_str::<Versioned>(&text).map_err(misread)?.version;
+        if version != VERSION {
+            let sentence = format!("scene version {version} is not known; this program reads {VERSION}");
+            return Err(Error::in_file(path, sentence));
+        }
+        let draft = format().from_str(&text).map_err(misread)?;
+        let Self(mut draft) = Self::new(draft).map_err(|e| Error::in_file(path, e))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        draft.map_files(|file| folder.join(file));
+        Ok(Self(draft))
+    }
+
+    /// Writes a scene file; its paths are written relative to it.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<()> {
+        let mut draft = self.0.clone();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        draft.map_files(|file| relative(file, folder));
+        let pretty = ron::ser::PrettyConfig::new();
+        let text = format().to_string_pretty(&draft, pretty).map_err(|e| Error::Fault(format!("scene to RON: {e}")))?;
+        export::write_atomically(path, |file| writeln!(file, "{text}"))
+    }
+
+    /// Every file the scene reads.
+    pub fn files(&self) -> Vec<&Path> {
+        let source = match &self.source {
+            Source::File(path) => Some(path.as_path()),
+            Source::Gallery(_) => None,
+        };
+        source.into_iter().chain(self.layers.iter().flat_map(Layer::files)).collect()
+    }
+
+    /// The draft to change.
+    pub fn into_draft(self) -> Draft {
+        self.0
+    }
+}
+
+impl Draft {
+    fn map_files(&mut self, f: impl Fn(&Path) -> PathBuf) {
+        if let Source::File(path) = &mut self.source {
+            *path = f(path);
+        }
+        self.layers = std::mem::take(&mut self.layers).into_iter().map(|layer| layer.map_files(&f)).collect();
+    }
+}
+
+/// Memory a complex of so many inside cells takes to warp, in bytes, about.
+pub fn memory_estimate(cells: f64) -> f64 {
+    cells * BYTES_PER_CELL
+}
+
+/// Whether so many cells along the longest axis can be had.
+///
+/// # Errors
+/// Names the range, and the memory that a solid box of that resolution would take.
+pub fn check_resolution(resolution: u32) -> Result<()> {
+    if (MIN_RESOLUTION..=MAX_RESOLUTION).contains(&resolution) {
+        return Ok(());
+    }
+    let bytes = human_bytes(memory_estimate(f64::from(resolution).powi(3)));
+    Err(Error::input(format!(
+        "resolution {resolution} is not within {MIN_RESOLUTION} to {MAX_RESOLUTION}: a solid box would take about {bytes} of memory"
+    )))
+}
+
+/// RON in which `range: (0.5, 2.0)` need not be written `Some((0.5, 2.0))`.
+fn format() -> ron::Options {
+    ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+}
+
+/// `file` as seen from `folder`; absolute where there is no relative way.
+fn relative(file: &Path, folder: &Path) -> PathBuf {
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let full = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path));
+    let (Ok(file_at), Ok(folder_at)) = (full(file), full(here)) else {
+        return file.into();
+    };
+    let common = file_at.components().zip(folder_at.components()).take_while(|(a, b)| a == b).count();
+    let below_root = file_at.components().take(common).any(|c| matches!(c, Component::Normal(_)));
+    if !below_root {
+        return file_at;
+    }
+    let up = folder_at.components().skip(common).map(|_| Component::ParentDir);
+    up.chain(file_at.components().skip(common)).collect()
+}

@@ -1,0 +1,168 @@
+//! 3.5  Deformation transfer: `B' = B + h Σ (α, β, γ, δ) (V'' − V)`.
+//!
+//! # Changes from the paper
+//! The paper sets `B' = Σ (α, β, γ, δ) V''`; in exact arithmetic that is the same, in floating point the form with the
+//! displacement gives back the input's own digits where nothing moved.
+
+pub mod plugin;
+
+use glam::{DVec3, IVec3, Vec3A};
+use rayon::prelude::*;
+
+use crate::{
+    boundary::Boundary,
+    voxel::{Complex, Grid},
+};
+
+/// Barycentric coordinates of every boundary vertex in its element, computed once.
+#[derive(Debug, Clone)]
+pub struct Binding {
+    /// `[vertices]` the element's four nodes.
+    pub nodes: Vec<[u32; 4]>,
+    /// `[vertices]` α β γ δ, each in 0..=1, summing to 1; all zero for a vertex outside the complex (one that no triangle
+    /// uses), which stays where it is.
+    pub weights: Vec<[f32; 4]>,
+    /// B in source units.
+    rest: Vec<DVec3>,
+    /// V.
+    rest_nodes: Vec<Vec3A>,
+    grid: Grid,
+    /// Whether results are rounded to f32, as files hold them.
+    single: bool,
+}
+
+/// Vertices per parallel task.
+const VERTICES_PER_TASK: usize = 2048;
+
+/// Coordinates are rounded to f32 when that moves nothing by more than about 1e-4 of a cell at 256 cells: when the
+/// shape is not further from the origin than this many of its own sizes. Otherwise they stay f64.
+const FAR_FROM_ORIGIN: f64 = 16.0;
+
+/// Looks up cells by position.
+pub(crate) struct CellIndex<'a> {
+    complex: &'a Complex,
+    index: Vec<u32>,
+}
+
+impl<'a> CellIndex<'a> {
+    pub(crate) fn new(complex: &'a Complex) -> Self {
+        let n = complex.grid.cells.as_usizevec3();
+        let mut index = vec![u32::MAX; n.x * n.y * n.z];
+        for (k, c) in complex.cells.iter().enumerate() {
+            let c = c.as_usizevec3();
+            index[(c.z * n.y + c.y) * n.x + c.x] = k as u32;
+        }
+        Self { complex, index }
+    }
+
+    fn at(&self, c: IVec3) -> Option<u32> {
+        let n = self.complex.grid.cells.as_ivec3();
+        if c.cmplt(IVec3::ZERO).any() || c.cmpge(n).any() {
+            return None;
+        }
+        let k = self.index[((c.z * n.y + c.y) * n.x + c.x) as usize];
+        (k != u32::MAX).then_some(k)
+    }
+
+    /// The inside cell that holds `p` (in cells), allowing for rounding at the faces.
+    pub(crate) fn locate(&self, p: DVec3) -> Option<u32> {
+        const SLACK: f64 = 1.0e-6;
+        self.at(p.floor().as_ivec3()).or_else(|| {
+            (0..8).find_map(|k| {
+                let off = DVec3::new(
+                    if k & 1 == 0 { -SLACK } else { SLACK },
+                    if k & 2 == 0 { -SLACK } else { SLACK },
+                    if k & 4 == 0 { -SLACK } else { SLACK },
+                );
+                self.at((p + off).floor().as_ivec3())
+            })
+        })
+    }
+
+    /// Element nodes and barycentric weights of `p` (in cells) in the cell found by [`locate`](Self::locate).
+    pub(crate) fn barycentric(&self, cell: u32, p: DVec3) -> ([u32; 4], [f32; 4]) {
+        let corners = &self.complex.corners[cell as usize];
+        let local = (p - self.complex.cells[cell as usize].as_dvec3()).clamp(DVec3::ZERO, DVec3::ONE);
+        // The Kuhn element holds the points whose coordinates are sorted as its path walks the axes.
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|&a, &b| local[b].total_cmp(&local[a]));
+        let [a, b, c] = axes;
+        let path = [0, 1 << a, 1 << a | 1 << b, 7];
+        let weights = [1.0 - local[a], local[a] - local[b], local[b] - local[c], local[c]];
+        (path.map(|k: usize| corners[k]), weights.map(|w| w as f32))
+    }
+}
+
+impl Binding {
+    /// Binds every vertex of the boundary to the complex made from it.
+    pub fn new(boundary: &Boundary, complex: &Complex) -> Self {
+        let cells = CellIndex::new(complex);
+        let bound: Vec<([u32; 4], [f32; 4])> = boundary
+            .positions
+            .par_iter()
+            .with_min_len(VERTICES_PER_TASK)
+            .map(|&p| {
+                let p = complex.grid.lattice_from_source(p);
+                cells.locate(p).map_or(([0; 4], [0.0; 4]), |cell| cells.barycentric(cell, p))
+            })
+            .collect();
+        let (nodes, weights) = bound.into_iter().unzip();
+        let grid = complex.grid;
+        let extent = grid.cells.as_dvec3() * grid.cell_size;
+        let far = (grid.origin.abs() + extent).max_element() > FAR_FROM_ORIGIN * extent.max_element();
+        let representable = extent.max_element() > 1.0e-30 && extent.max_element() < 1.0e30;
+        Self {
+            nodes,
+            weights,
+            rest: boundary.positions.clone(),
+            rest_nodes: complex.rest.clone(),
+            grid,
+            single: !far && representable,
+        }
+    }
+
+    /// Invariant: weights are barycentric. Returns the first vertex for which they are not.
+    pub fn is_inside(&self) -> Result<(), usize> {
+        let fine = |w: &[f32; 4]| {
+            w.iter().all(|&x| x >= 0.0) && ((w.iter().sum::<f32>() - 1.0).abs() < 1e-5 || w.iter().all(|&x| x == 0.0))
+        };
+        self.weights.iter().position(|w| !fine(w)).map_or(Ok(()), Err)
+    }
+
+    /// B' of a state, in source units, rounded as it will be written.
+    pub fn apply(&self, nodes: &[Vec3A]) -> Vec<DVec3> {
+        (0..self.nodes.len()).into_par_iter().with_min_len(VERTICES_PER_TASK).map(|v| self.vertex(v, nodes)).collect()
+    }
+
+    fn vertex(&self, v: usize, nodes: &[Vec3A]) -> DVec3 {
+        let mut moved = DVec3::ZERO;
+        for (&i, &w) in self.nodes[v].iter().zip(&self.weights[v]) {
+            moved += f64::from(w) * (nodes[i as usize].as_dvec3() - self.rest_nodes[i as usize].as_dvec3());
+        }
+        let p = self.rest[v] + self.grid.cell_size * moved;
+        if self.single { p.as_vec3().as_dvec3() } else { p }
+    }
+
+    /// B' of a state for comparing its triangles: source units where files hold f32, else cells.
+    pub fn apply_for_check(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
+        (0..self.nodes.len())
+            .into_par_iter()
+            .with_min_len(VERTICES_PER_TASK)
+            .map(|v| {
+                let p = self.vertex(v, nodes);
+                if self.single { p.as_vec3a() } else { self.grid.lattice_from_source(p).as_vec3a() }
+            })
+            .collect()
+    }
+
+    /// B' in cells, each node taking `pick(a, b)` of two states: bounds of what lies between them.
+    pub(crate) fn apply_between(&self, a: &[Vec3A], b: &[Vec3A], pick: fn(Vec3A, Vec3A) -> Vec3A) -> Vec<Vec3A> {
+        (0..self.nodes.len())
+            .into_par_iter()
+            .with_min_len(VERTICES_PER_TASK)
+            .map(|v| {
+                self.nodes[v].iter().zip(&self.weights[v]).map(|(&i, &w)| w * pick(a[i as usize], b[i as usize])).sum()
+            })
+            .collect()
+    }
+}

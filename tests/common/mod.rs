@@ -1,0 +1,106 @@
+//! What several contracts need.
+#![allow(dead_code, reason = "each test file uses its own part")]
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use homunculus::{
+    Result,
+    boundary::Boundary,
+    importance::{Layer, Stack},
+    schedule::{self, Observer, Outcome, Progress, Settings},
+};
+
+/// The folder of real inputs beside the checkout, or `None` with a word where it is not.
+pub fn shared(folder: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(folder);
+    if !path.is_dir() {
+        println!("skipped: no {} beside the checkout", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+/// All files of a folder that a reader could take, in order of their names.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("readable folder")
+        .map(|entry| entry.expect("entry").path())
+        .filter(|p| p.extension().is_some_and(|e| ["obj", "ply", "stl", "off", "glb", "gltf"].iter().any(|x| e == *x)))
+        .collect();
+    files.sort();
+    files
+}
+
+/// A number from the environment, or the default.
+pub fn number<T: std::str::FromStr>(name: &str, default: T) -> T {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+
+/// Watches nothing, stops never.
+pub struct Quiet;
+
+impl Observer for Quiet {
+    fn progress(&self, _: &Progress) {}
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// SplitMix64, so that a seed means the same field for ever.
+pub struct Random(pub u64);
+
+impl Random {
+    /// In 0..1.
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Spheres on the surface with values spread evenly in the logarithm over `low..=high`.
+    pub fn layers(&mut self, boundary: &Boundary, count: usize, low: f64, high: f64) -> Vec<Layer> {
+        let (min, max) = boundary.bounds().expect("bounds");
+        let longest = (max - min).max_element();
+        (0..count)
+            .map(|_| {
+                let triangle = boundary.triangles[(self.unit() * boundary.triangles.len() as f64) as usize];
+                let centre: DVec3 = boundary.positions[triangle[0] as usize];
+                Layer::Sphere {
+                    centre: centre.to_array(),
+                    radius: longest * (0.15 + 0.35 * self.unit()),
+                    value: (low.ln() + (high / low).ln() * self.unit()).exp() as f32,
+                }
+            })
+            .collect()
+    }
+}
+
+/// Warps with layers over importance 1.
+pub fn warp(boundary: &Boundary, layers: &[Layer], resolution: u32, fidelity: f32) -> Result<Outcome> {
+    let stack = Stack::load(layers, 1.0, false, boundary, Path::new(""))?;
+    let settings = Settings { resolution, fidelity, keys: 8, reference: None };
+    schedule::warp(boundary, &stack, &settings, &Quiet)
+}
+
+/// A closed box.
+pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let at = |k: usize| DVec3::from_array(std::array::from_fn(|a| if k >> a & 1 == 0 { low[a] } else { high[a] }));
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    ((0..8).map(at).collect(), triangles)
+}
+
+/// Several closed boxes as one boundary.
+pub fn cuboids(name: &str, boxes: &[([f64; 3], [f64; 3])]) -> Boundary {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for &(low, high) in boxes {
+        let (p, t) = cuboid(low, high);
+        let first = positions.len() as u32;
+        positions.extend(p);
+        triangles.extend(t.iter().map(|t| t.map(|v| v + first)));
+    }
+    Boundary::from_triangles(name, positions, triangles)
+}
