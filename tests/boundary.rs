@@ -244,6 +244,33 @@ fn ply_keeps_every_property() {
 }
 
 #[test]
+fn ply_is_read_as_writers_write_it() {
+    let text = "ply\rformat ascii 1.0\rcomment gr@n\robj_info two\relement vertex 3\rproperty float x\rproperty float y\rproperty float z\r\
+        property float velocity.x\relement face 1\rproperty list uchar int vertex_indices\rend_header\r0 0 0 nan\r.5 0 0 1.\r\r0 1\r0 -inf\r3 0 1 2";
+    for ends in ["\r", "\n", "\r\n"] {
+        let mut bytes = text.replace('\r', ends).into_bytes();
+        // Latin-1.
+        *bytes.iter_mut().find(|b| **b == b'@').unwrap() = 0xFC;
+        let mesh = read_bytes("a.ply", &bytes);
+        let values = attribute(&mesh, "velocity.x");
+        assert!(values[0].is_nan() && values[1..] == [1.0, f32::NEG_INFINITY], "{values:?}");
+        assert_eq!((mesh.positions[1].x, mesh.triangles.len()), (0.5, 1));
+    }
+}
+
+#[test]
+fn stl_texts_keep_every_solid_and_digit() {
+    let solid = |name: &str, x: &str| {
+        format!(
+            "solid {name}\nfacet normal nan nan nan\nouter loop\nvertex {x} 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid {name}\n"
+        )
+    };
+    let mesh = read_bytes("a.stl", (solid("a", "500123.456") + &solid("b", "0")).as_bytes());
+    assert_eq!((mesh.triangles.len(), mesh.positions[0].x), (2, 500_123.456));
+    assert_eq!(mesh.regions.unwrap().names, ["a", "b"]);
+}
+
+#[test]
 fn off_variants_are_read() {
     let coff =
         "COFF # colours\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255 # green\n\n0 1 0 0 0 255 255\n3 0 1 2 10 20 30\n";
@@ -289,6 +316,36 @@ fn gltf_strips_fans_and_sparse_accessors() {
     root["accessorPatches"] = json!({ "0": { "sparse": { "count": 1, "indices": { "bufferView": 2, "componentType": 5125 }, "values": { "bufferView": 1 } } } });
     let sparse = read_bytes("a.glb", &glb(root, &[(TRIANGLE, "VEC3"), (&[9., 9., 9.], "VEC3")], &[2]));
     assert_eq!(sparse.positions[2], DVec3::splat(9.0));
+}
+
+#[test]
+fn gltf_numbers_of_every_type_are_read() {
+    // Positions in shorts with a gap after each, colours in normalized bytes, and what only viewers with extensions understand.
+    let mut binary: Vec<u8> = Vec::new();
+    for [x, y, z] in [[-300i16, 0, 0], [300, 0, 0], [0, 300, 0]] {
+        binary.extend([x, y, z, 9].into_iter().flat_map(i16::to_le_bytes));
+    }
+    binary.extend([255, 0, 51, 255, 255, 0, 51, 255, 255, 0, 51, 0]);
+    let uri = format!(
+        "data:application/octet-stream;base64,{}",
+        base64::Engine::encode(&base64::prelude::BASE64_STANDARD, &binary)
+    );
+    let root = json!({
+        "asset": { "version": "2.0" }, "scenes": [{}, { "nodes": [0] }], "scene": 1, "nodes": [{ "mesh": 0 }],
+        "extensionsRequired": ["KHR_mesh_quantization"],
+        "animations": [{ "channels": [{ "sampler": 0, "target": { "path": "pointer" } }], "samplers": [] }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "COLOR_0": 1, "UNKNOWN": 77 } }, { "mode": 9 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5122, "count": 3, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC4" },
+        ],
+        "bufferViews": [{ "buffer": 0, "byteLength": 24, "byteStride": 8 }, { "buffer": 0, "byteOffset": 24, "byteLength": 12 }],
+        "buffers": [{ "byteLength": 36, "uri": uri }],
+    });
+    let mesh = read_bytes("a.gltf", root.to_string().as_bytes());
+    assert_eq!(mesh.positions[2], DVec3::new(0.0, 300.0, 0.0));
+    assert_eq!(attribute(&mesh, "COLOR_0.b"), [0.2; 3]);
+    assert_eq!(attribute(&mesh, "COLOR_0.a"), [1.0, 1.0, 0.0]);
 }
 
 #[test]

@@ -2,6 +2,10 @@
 //!
 //! The text is kept: the export writes it again with other numbers in its `v` lines, so comments, groups, smoothing,
 //! `mtllib` and whatever else a line may say survive.
+//!
+//! Own code, line by line as it is written again. Why not a crate: `tobj` renumbers the vertices of each object in the order its
+//! faces use them (`f 4 3 1` makes vertex 4 the first), `obj` keeps the order but passes over the colours in `v 4 -3 0 1 0 0`,
+//! and `wavefront_obj` refuses such a line. Of these only `tobj` can read double precision.
 
 use std::borrow::Cow;
 use std::collections::HashMap;

@@ -2,6 +2,9 @@
 //!
 //! Line by line: one vertex or face in a line, as every writer does it. Colours after the coordinates are read even where the
 //! header does not announce them.
+//!
+//! Own code. Why not `off-rs`: it refuses every file whose first line is not `OFF` alone, so `COFF`, `NOFF`
+//! and `OFF 3 1 0`, and reads single precision.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,9 +1,16 @@
 //! The tables of a PLY: every element and property, known or not, text or binary.
 //!
-//! Own code rather than a crate: properties must keep their order and type to be written again, and a header's claims must
-//! not be believed before the bytes are there. Nothing is reserved by a claim; rows are read until they end.
+//! `serde-ply` reads header and rows, into columns: properties keep their order and type to be written again. A header's claims
+//! are held against the length of the file before; nothing is reserved by them.
+//!
+//! Why not `ply-rs-bw`: it refuses what writers write. A text with `nan` or `.5` among its numbers, a property named
+//! `velocity.x`, or a comment in Latin-1 (`# größer`) is an error for the whole file.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Display, Write as _};
+use std::io::Read as _;
+
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_ply::{PlyFormat, PlyReader, PropertyType, ScalarType};
 
 /// How the numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,20 +82,6 @@ pub(crate) struct Property {
 }
 
 impl Scalar {
-    fn named(word: &str) -> Option<Self> {
-        Some(match word {
-            "char" | "int8" => Self::I8,
-            "uchar" | "uint8" => Self::U8,
-            "short" | "int16" => Self::I16,
-            "ushort" | "uint16" => Self::U16,
-            "int" | "int32" => Self::I32,
-            "uint" | "uint32" => Self::U32,
-            "float" | "float32" => Self::F32,
-            "double" | "float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
     fn name(self) -> &'static str {
         match self {
             Self::I8 => "char",
@@ -124,21 +117,6 @@ impl Scalar {
         }
     }
 
-    /// A number from at most eight bytes, least significant first.
-    fn decode(self, bytes: [u8; 8]) -> f64 {
-        let [a, b, c, d, ..] = bytes;
-        match self {
-            Self::I8 => f64::from(a as i8),
-            Self::U8 => f64::from(a),
-            Self::I16 => f64::from(i16::from_le_bytes([a, b])),
-            Self::U16 => f64::from(u16::from_le_bytes([a, b])),
-            Self::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
-            Self::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
-            Self::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
-            Self::F64 => f64::from_le_bytes(bytes),
-        }
-    }
-
     /// Appends a number. Casts saturate; the values came from this type.
     fn encode(self, value: f64, encoding: Encoding, out: &mut Vec<u8>) {
         let start = out.len();
@@ -158,45 +136,78 @@ impl Scalar {
     }
 }
 
-/// Where the next number comes from.
-struct Numbers<'a> {
-    encoding: Encoding,
-    bytes: &'a [u8],
-}
-
-impl Numbers<'_> {
-    fn next(&mut self, scalar: Scalar) -> Result<f64, String> {
-        if self.encoding == Encoding::Ascii {
-            let start = self.bytes.iter().position(|b| !b.is_ascii_whitespace()).ok_or("the file ends")?;
-            let rest = &self.bytes[start..];
-            let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
-            let word = String::from_utf8_lossy(&rest[..end]);
-            self.bytes = &rest[end..];
-            let value: f64 =
-                word.parse().map_err(|_| format!("\"{}\" is no number", word.chars().take(20).collect::<String>()))?;
-            return Ok(if scalar == Scalar::F32 { f64::from(value as f32) } else { value });
+impl From<ScalarType> for Scalar {
+    fn from(scalar: ScalarType) -> Self {
+        match scalar {
+            ScalarType::I8 => Self::I8,
+            ScalarType::U8 => Self::U8,
+            ScalarType::I16 => Self::I16,
+            ScalarType::U16 => Self::U16,
+            ScalarType::I32 => Self::I32,
+            ScalarType::U32 => Self::U32,
+            ScalarType::F32 => Self::F32,
+            ScalarType::F64 => Self::F64,
         }
-        let size = scalar.bytes();
-        let (number, rest) = self.bytes.split_at_checked(size).ok_or("the file ends")?;
-        self.bytes = rest;
-        let mut eight = [0; 8];
-        eight[..size].copy_from_slice(number);
-        if self.encoding == Encoding::Big {
-            eight[..size].reverse();
-        }
-        Ok(scalar.decode(eight))
     }
 }
 
 impl PlyTable {
     /// Reads header and rows.
     pub fn parse(bytes: &[u8]) -> Result<Self, String> {
-        let (mut table, body) = header(bytes)?;
-        let mut numbers = Numbers { encoding: table.encoding, bytes: &bytes[body..] };
-        for element in &mut table.elements {
-            element.read(&mut numbers)?;
-        }
+        let (head, body, comments) = header(bytes)?;
+        let reader = PlyReader::from_reader(head.as_bytes()).map_err(|why| {
+            format!("its header is broken: {}; repair it or export the mesh again", short(&plain(why)))
+        })?;
+        let mut table = Self::claimed(&reader, comments);
+        table.check_claims(body.len())?;
+        // The last number of a text may lack its space.
+        let end: &[u8] = if table.encoding == Encoding::Ascii { b"\n" } else { b"" };
+        let mut reader = PlyReader::from_reader(head.as_bytes().chain(body).chain(end))
+            .map_err(|why| format!("{}; repair it", short(&plain(why))))?;
+        reader.deserialize_map(Elements(&mut table.elements)).map_err(plain)?;
         Ok(table)
+    }
+
+    /// The elements a header announces, still empty.
+    fn claimed<R: std::io::BufRead>(reader: &PlyReader<R>, comments: Vec<String>) -> Self {
+        let header = reader.header();
+        let encoding = match header.format {
+            PlyFormat::Ascii => Encoding::Ascii,
+            PlyFormat::BinaryLittleEndian => Encoding::Little,
+            PlyFormat::BinaryBigEndian => Encoding::Big,
+        };
+        let property = |property: &serde_ply::PlyProperty| {
+            let (length, scalar) = match property.property_type {
+                PropertyType::Scalar(scalar) => (None, scalar),
+                PropertyType::List { count_type, data_type } => (Some(count_type.into()), data_type),
+            };
+            let starts = if length.is_some() { vec![0] } else { Vec::new() };
+            Property { name: property.name.clone(), scalar: scalar.into(), length, values: Vec::new(), starts }
+        };
+        let element = |element: &serde_ply::ElementDef| Element {
+            name: element.name.clone(),
+            count: element.count,
+            properties: element.properties.iter().map(property).collect(),
+        };
+        Self { encoding, comments, elements: header.elem_defs.iter().map(element).collect() }
+    }
+
+    /// Whether so many rows can be in so many bytes.
+    fn check_claims(&self, bytes: usize) -> Result<(), String> {
+        // The last number of a text may lack its space.
+        let mut left = bytes.saturating_add(1);
+        for element in &self.elements {
+            let smallest: usize = element.properties.iter().map(|p| p.length.unwrap_or(p.scalar).bytes()).sum();
+            let least = if self.encoding == Encoding::Ascii { 2 * element.properties.len() } else { smallest };
+            left = left.checked_sub(element.count.saturating_mul(least)).ok_or_else(|| {
+                let (count, name) = (element.count, short(&element.name));
+                format!(
+                    "the header claims {count} {name} rows, but only {} bytes are left; get the whole file again",
+                    left.saturating_sub(1)
+                )
+            })?;
+        }
+        Ok(())
     }
 
     /// An element by name.
@@ -241,33 +252,6 @@ impl Element {
         self.properties.iter().find(|p| p.name == name)
     }
 
-    fn read(&mut self, numbers: &mut Numbers) -> Result<(), String> {
-        let smallest: usize = self.properties.iter().map(|p| p.length.unwrap_or(p.scalar).bytes()).sum();
-        let least = if numbers.encoding == Encoding::Ascii { 2 * self.properties.len() } else { smallest };
-        // The last number of a text may lack its space.
-        if self.count.saturating_mul(least) > numbers.bytes.len() + 1 {
-            let left = numbers.bytes.len();
-            return Err(format!(
-                "the header claims {} {} rows, but only {left} bytes are left; get the whole file again",
-                self.count, self.name
-            ));
-        }
-        if self.properties.is_empty() {
-            return Ok(());
-        }
-        for row in 0..self.count {
-            for property in &mut self.properties {
-                property.read(numbers).map_err(|why| {
-                    format!(
-                        "{} {row}, property {}: {why}; get the whole file again or repair that row",
-                        self.name, property.name
-                    )
-                })?;
-            }
-        }
-        Ok(())
-    }
-
     fn write(&self, encoding: Encoding, out: &mut Vec<u8>) {
         for row in 0..self.count {
             let line = out.len();
@@ -301,22 +285,6 @@ impl Property {
         Self { name: name.into(), scalar, length: None, values, starts: Vec::new() }
     }
 
-    fn read(&mut self, numbers: &mut Numbers) -> Result<(), String> {
-        let Some(length) = self.length else {
-            self.values.push(numbers.next(self.scalar)?);
-            return Ok(());
-        };
-        let length = numbers.next(length)?;
-        if !(0.0..=f64::from(u32::MAX)).contains(&length) || length.fract() != 0.0 {
-            return Err(format!("a list cannot have {length} entries"));
-        }
-        for _ in 0..length as usize {
-            self.values.push(numbers.next(self.scalar)?);
-        }
-        self.starts.push(self.values.len());
-        Ok(())
-    }
-
     /// The list of one row; empty for a plain number.
     pub fn list(&self, row: usize) -> &[f64] {
         match (self.starts.get(row), self.starts.get(row + 1)) {
@@ -330,52 +298,155 @@ impl Property {
     }
 }
 
-/// The header, and where the rows start.
-fn header(bytes: &[u8]) -> Result<(PlyTable, usize), String> {
-    let mut table = PlyTable { encoding: Encoding::Ascii, comments: Vec::new(), elements: Vec::new() };
+/// The header with its lines in order, the rows after it, and `comment` and `obj_info` lines.
+///
+/// The crate wants UTF-8 and lines that end as on Unix; comments come in any encoding, and from any system.
+fn header(bytes: &[u8]) -> Result<(String, &[u8], Vec<String>), String> {
+    let (mut head, mut comments) = (String::new(), Vec::new());
     let mut at = 0;
-    let mut number = 0;
     while let Some(end) = bytes[at..].iter().position(|&b| b == b'\n' || b == b'\r') {
         let line = String::from_utf8_lossy(&bytes[at..at + end]);
         at += end + if bytes[at + end..].starts_with(b"\r\n") { 2 } else { 1 };
-        number += 1;
-        let words: Vec<&str> = line.split_whitespace().collect();
-        match words.as_slice() {
-            ["ply"] | [] => {}
-            ["comment" | "obj_info", ..] => table.comments.push(line.into_owned()),
-            ["format", "ascii", _] => table.encoding = Encoding::Ascii,
-            ["format", "binary_little_endian", _] => table.encoding = Encoding::Little,
-            ["format", "binary_big_endian", _] => table.encoding = Encoding::Big,
-            ["element", name, count] => {
-                let count = count.parse().map_err(|_| {
-                    format!("line {number}: \"{count}\" is no number of {name} rows; repair the header")
-                })?;
-                table.elements.push(Element { name: (*name).into(), count, properties: Vec::new() });
-            }
-            ["property", types @ .., name] => {
-                let unknown =
-                    || format!("line {number}: \"{line}\" has a type that PLY does not know; repair the header");
-                let (length, scalar) = match types {
-                    ["list", length, scalar] => (Some(Scalar::named(length).ok_or_else(unknown)?), scalar),
-                    [scalar] => (None, scalar),
-                    _ => return Err(unknown()),
-                };
-                let scalar = Scalar::named(scalar).ok_or_else(unknown)?;
-                let element = table
-                    .elements
-                    .last_mut()
-                    .ok_or_else(|| format!("line {number}: a property before any element; repair the header"))?;
-                let starts = if length.is_some() { vec![0] } else { Vec::new() };
-                element.properties.push(Property { name: (*name).into(), scalar, length, values: Vec::new(), starts });
-            }
-            ["end_header"] => return Ok((table, at)),
+        match line.split_whitespace().next() {
+            Some("comment" | "obj_info") => comments.push(line.into_owned()),
+            Some("end_header") => return Ok((head + "end_header\n", &bytes[at..], comments)),
             _ => {
-                return Err(format!(
-                    "line {number}: \"{}\" is no line of a PLY header; repair it",
-                    line.chars().take(40).collect::<String>()
-                ));
+                head.push_str(&line);
+                head.push('\n');
             }
         }
     }
     Err("the header has no end_header; get the whole file again".into())
+}
+
+/// What the crate says, without saying each time that it says it.
+fn plain(why: impl Display) -> String {
+    let why = why.to_string();
+    let why = why.trim_start_matches("Error while deserializing ply: ");
+    if why == "failed to fill whole buffer" { "the file ends".into() } else { why.into() }
+}
+
+/// The start of something the file says, which may be of any length.
+fn short(text: &str) -> String {
+    text.chars().take(60).collect()
+}
+
+/// Reads all elements.
+struct Elements<'t>(&'t mut [Element]);
+
+impl<'de> Visitor<'de> for Elements<'_> {
+    type Value = ();
+
+    fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str("elements")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        for element in self.0 {
+            map.next_key::<IgnoredAny>()?;
+            map.next_value_seed(Rows(element))?;
+        }
+        Ok(())
+    }
+}
+
+/// Reads the rows of one element.
+struct Rows<'t>(&'t mut Element);
+
+impl<'de> DeserializeSeed<'de> for Rows<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Rows<'_> {
+    type Value = ();
+
+    fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str("rows")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut rows: A) -> Result<(), A::Error> {
+        let Element { name, count, properties } = self.0;
+        // Rows of nothing end at once, however many are claimed.
+        for row in 0..if properties.is_empty() { 0 } else { *count } {
+            rows.next_element_seed(Row(properties)).map_err(|why| {
+                A::Error::custom(format!(
+                    "{} {row}, {}; get the whole file again or repair that row",
+                    short(name),
+                    plain(why)
+                ))
+            })?;
+        }
+        Ok(())
+    }
+}
+
+/// Reads one row.
+struct Row<'t>(&'t mut [Property]);
+
+impl<'de> DeserializeSeed<'de> for Row<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Row<'_> {
+    type Value = ();
+
+    fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str("properties")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        for property in self.0 {
+            map.next_key::<IgnoredAny>()?;
+            map.next_value_seed(&mut *property).map_err(|why| {
+                A::Error::custom(format!("property {}: {}", short(&property.name), short(&plain(why))))
+            })?;
+        }
+        Ok(())
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for &mut Property {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+/// Appends one number, or one list.
+impl<'de> Visitor<'de> for &mut Property {
+    type Value = ();
+
+    fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str("numbers")
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<(), E> {
+        self.visit_f64(value as f64)
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<(), E> {
+        self.visit_f64(value as f64)
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<(), E> {
+        self.values.push(value);
+        Ok(())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        while let Some(value) = list.next_element()? {
+            self.values.push(value);
+        }
+        self.starts.push(self.values.len());
+        Ok(())
+    }
 }

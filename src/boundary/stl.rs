@@ -1,8 +1,14 @@
 //! STL, text and binary: a soup, each corner a vertex as in the file.
+//!
+//! Binary ones are read by `stl_io`, text by own code. Why not `stl_io` for both: of a text with two solids it gives the first and
+//! drops the second without a word; it refuses facets whose normal is `nan`, as writers say of slivers, and rounds coordinates to
+//! single precision (500123.456 becomes 500123.47).
 
+use std::borrow::Cow;
+use std::io::Cursor;
 use std::path::Path;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::source::{NONE, Object, Original, Part};
 use super::{Boundary, format};
@@ -45,17 +51,22 @@ fn binary(bytes: &[u8], count: usize) -> Result<Boundary, String> {
         let there = body.len() / 50;
         return Err(format!("it claims {count} triangles but holds {there}; get the whole file again"));
     }
-    let mut boundary = Boundary::default();
-    let mut extras = Vec::with_capacity(count);
-    for triangle in body.chunks_exact(50).take(count) {
-        let number = |at: usize| {
-            f64::from(f32::from_le_bytes([triangle[at], triangle[at + 1], triangle[at + 2], triangle[at + 3]]))
-        };
-        let first = boundary.positions.len() as u32;
-        boundary.positions.extend([12, 24, 36].map(|at| DVec3::new(number(at), number(at + 4), number(at + 8))));
-        boundary.triangles.push([first, first + 1, first + 2]);
-        extras.push([triangle[48], triangle[49]]);
+    let mut whole = Cow::Borrowed(bytes);
+    if bytes.starts_with(b"solid") {
+        // The word of a text, which the crate would take it for.
+        whole.to_mut()[..5].fill(b' ');
     }
+    let mut cursor = Cursor::new(&*whole);
+    let unreadable = |why: std::io::Error| format!("it cannot be read as binary STL ({why}); export the mesh again");
+    let mut boundary = Boundary::default();
+    for triangle in stl_io::create_stl_reader(&mut cursor).map_err(unreadable)? {
+        let first = boundary.positions.len() as u32;
+        let corners = triangle.map_err(unreadable)?.vertices;
+        boundary.positions.extend(corners.map(|corner| Vec3::from_array(corner.0).as_dvec3()));
+        boundary.triangles.push([first, first + 1, first + 2]);
+    }
+    // The crate passes over these.
+    let extras = body.chunks_exact(50).take(count).map(|triangle| [triangle[48], triangle[49]]).collect();
     if body.len() > count * 50 {
         boundary.warnings.push(format!("{} bytes after the last triangle are left out", body.len() - count * 50));
     }

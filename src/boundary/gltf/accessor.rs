@@ -1,13 +1,19 @@
-//! Numbers out of buffers, with every offset checked.
+//! Numbers out of buffers: the `gltf` crate decodes, once it is sure that it stays within them.
+//!
+//! Through its accessors rather than its reader of primitives, which panics on component types that the specification does not
+//! allow (joints in floating point) and takes those of `KHR_mesh_quantization` for single precision.
 
 use std::collections::HashMap;
-use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
 use base64::Engine as _;
+use gltf::accessor::sparse::{IndexType, Sparse};
+use gltf::accessor::util::{ItemIter, SparseIndicesIter};
+use gltf::accessor::{DataType, Dimensions, Item, Iter};
+use gltf::buffer::{Source, View};
+use gltf::json::validation::Checked;
+use gltf::{Accessor, Buffer};
 
-use super::{Accessor, Document, SparsePart};
 use crate::boundary::{format, mtl};
 
 /// Numbers that may be decoded whatever the size of the file: room for instances, and accessors that are zero by default.
@@ -17,30 +23,11 @@ const FREE_NUMBERS: usize = 16 << 20;
 /// The buffers of a document, loaded when first asked for.
 pub(super) struct Buffers<'a> {
     folder: PathBuf,
-    document: &'a Document,
+    document: &'a gltf::Document,
     binary: Option<&'a [u8]>,
-    loaded: HashMap<&'a str, Rc<Vec<u8>>>,
+    loaded: HashMap<&'a str, Vec<u8>>,
     /// How many more numbers may be decoded: instances and defaults make more of a file than it holds.
     budget: usize,
-}
-
-/// Bytes within the file itself, or within one that it refers to.
-pub(super) enum Bytes<'a> {
-    /// Of the GLB's own chunk.
-    Own(&'a [u8]),
-    /// A range, in bounds, of another file or a data URI.
-    Other(Rc<Vec<u8>>, Range<usize>),
-}
-
-impl Deref for Bytes<'_> {
-    type Target = [u8];
-
-    fn deref(&self) -> &[u8] {
-        match self {
-            Self::Own(bytes) => bytes,
-            Self::Other(bytes, range) => bytes.get(range.clone()).unwrap_or_default(),
-        }
-    }
 }
 
 /// `[count * width]` numbers of an accessor.
@@ -60,35 +47,28 @@ impl Numbers {
 
 impl<'a> Buffers<'a> {
     /// None loaded yet.
-    pub fn new(path: &Path, document: &'a Document, binary: Option<&'a [u8]>, file_size: usize) -> Self {
+    pub fn new(path: &Path, document: &'a gltf::Document, binary: Option<&'a [u8]>, file_size: usize) -> Self {
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        Self {
-            folder,
-            document,
-            binary,
-            loaded: HashMap::new(),
-            budget: FREE_NUMBERS.saturating_add(file_size.saturating_mul(16)),
-        }
+        let budget = FREE_NUMBERS.saturating_add(file_size.saturating_mul(16));
+        Self { folder, document, binary, loaded: HashMap::new(), budget }
     }
 
     /// The bytes of a data URI or of a file.
-    pub fn resource(&mut self, uri: &'a str) -> Result<Rc<Vec<u8>>, String> {
-        if let Some(bytes) = self.loaded.get(uri) {
-            return Ok(Rc::clone(bytes));
+    pub fn resource(&mut self, uri: &'a str) -> Result<&[u8], String> {
+        if !self.loaded.contains_key(uri) {
+            let bytes = if let Some(data) = uri.strip_prefix("data:") {
+                data_uri(data).ok_or("a data URI in it is malformed; export the scene again")?
+            } else {
+                let missing = || format!("the file {uri} it refers to is missing; put it beside, or export as GLB");
+                let file = mtl::find(&self.folder, &percent_decoded(uri))
+                    .or_else(|| mtl::find(&self.folder, uri))
+                    .ok_or_else(missing)?;
+                format::load(&file).map_err(|error| error.to_string())?
+            };
+            self.budget = self.budget.saturating_add(bytes.len().saturating_mul(16));
+            self.loaded.insert(uri, bytes);
         }
-        let bytes = if let Some(data) = uri.strip_prefix("data:") {
-            data_uri(data).ok_or("a data URI in it is malformed; export the scene again")?
-        } else {
-            let missing = || format!("the file {uri} it refers to is missing; put it beside, or export as GLB");
-            let file = mtl::find(&self.folder, &percent_decoded(uri))
-                .or_else(|| mtl::find(&self.folder, uri))
-                .ok_or_else(missing)?;
-            format::load(&file).map_err(|error| error.to_string())?
-        };
-        self.budget = self.budget.saturating_add(bytes.len().saturating_mul(16));
-        let bytes = Rc::new(bytes);
-        self.loaded.insert(uri, Rc::clone(&bytes));
-        Ok(bytes)
+        Ok(&self.loaded[uri])
     }
 
     /// Accounts for numbers, or bytes, that are made of the buffers' content otherwise.
@@ -98,148 +78,161 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes of a buffer view.
-    pub fn view(&mut self, index: usize) -> Result<Bytes<'a>, String> {
-        let document = self.document;
-        let view = document
-            .buffer_views
-            .get(index)
-            .ok_or_else(|| no_such("buffer view", index, document.buffer_views.len()))?;
-        let buffer =
-            document.buffers.get(view.buffer).ok_or_else(|| no_such("buffer", view.buffer, document.buffers.len()))?;
-        let range = view.byte_offset..view.byte_offset.saturating_add(view.byte_length);
-        let short = |length: usize| {
-            format!(
-                "buffer view {index} ends at byte {}, but buffer {} has {length}; get the whole file again",
-                range.end, view.buffer
-            )
+    pub fn view(&mut self, view: &View<'a>) -> Result<&[u8], String> {
+        let buffer = view.buffer();
+        let index = buffer.index();
+        let bytes = match buffer.source() {
+            Source::Bin => {
+                let chunk = self.binary.filter(|_| index == 0);
+                chunk.ok_or_else(|| format!("buffer {index} has no content; export the scene again"))?
+            }
+            Source::Uri(uri) => self.resource(uri)?,
         };
-        match &buffer.uri {
-            None => {
-                let bytes = self
-                    .binary
-                    .filter(|_| view.buffer == 0)
-                    .ok_or_else(|| format!("buffer {} has no content; export the scene again", view.buffer))?;
-                bytes.get(range.clone()).map(Bytes::Own).ok_or_else(|| short(bytes.len()))
-            }
-            Some(uri) => {
-                let bytes = self.resource(uri)?;
-                if bytes.len() < buffer.byte_length {
-                    return Err(format!(
-                        "buffer {} should have {} bytes and has {}; get the whole file again",
-                        view.buffer,
-                        buffer.byte_length,
-                        bytes.len()
-                    ));
-                }
-                match bytes.get(range.clone()) {
-                    Some(_) => Ok(Bytes::Other(bytes, range)),
-                    None => Err(short(bytes.len())),
-                }
-            }
+        let short = |what: String, length: usize| {
+            format!("{what} byte {length}, but buffer {index} has {}; get the whole file again", bytes.len())
+        };
+        if matches!(buffer.source(), Source::Uri(_)) && bytes.len() < buffer.length() {
+            return Err(short("it says that it ends at".into(), buffer.length()));
+        }
+        let end = view.offset().saturating_add(view.length());
+        bytes.get(view.offset()..end).ok_or_else(|| short(format!("buffer view {} ends at", view.index()), end))
+    }
+
+    /// The bytes of a buffer that [`Self::view`] has loaded, as the crate asks for them.
+    fn loaded(&self, buffer: &Buffer<'a>) -> Option<&[u8]> {
+        match buffer.source() {
+            Source::Bin => self.binary.filter(|_| buffer.index() == 0),
+            Source::Uri(uri) => self.loaded.get(uri).map(Vec::as_slice),
         }
     }
 
-    /// How many elements an accessor has.
-    pub fn count(&self, index: usize) -> Result<usize, String> {
-        let accessors = &self.document.accessors;
-        accessors.get(index).map(|a| a.count).ok_or_else(|| no_such("accessor", index, accessors.len()))
+    /// What the elements of an accessor are.
+    ///
+    /// # Errors
+    ///
+    /// Types that glTF does not have; the crate panics when asked for them.
+    pub fn shape(&self, accessor: &Accessor<'a>) -> Result<Dimensions, String> {
+        let index = accessor.index();
+        let said = &self.document.as_json().accessors[index];
+        let unknown = |what: &str| format!("accessor {index} has an unknown {what}; export the scene again");
+        let Checked::Valid(shape) = said.type_ else { return Err(unknown("type")) };
+        let of_indices = said.sparse.as_ref().map(|sparse| sparse.indices.component_type);
+        if matches!(said.component_type, Checked::Invalid) || matches!(of_indices, Some(Checked::Invalid)) {
+            return Err(unknown("component type"));
+        }
+        Ok(shape)
     }
 
     /// The numbers of an accessor, sparse ones filled in.
-    pub fn numbers(&mut self, index: usize) -> Result<Numbers, String> {
-        let document = self.document;
-        let accessor =
-            document.accessors.get(index).ok_or_else(|| no_such("accessor", index, document.accessors.len()))?;
-        let width = match accessor.shape.as_str() {
-            "SCALAR" => 1,
-            "VEC2" => 2,
-            "VEC3" => 3,
-            "VEC4" | "MAT2" => 4,
-            "MAT3" => 9,
-            "MAT4" => 16,
-            other => return Err(format!("accessor {index} has the unknown type \"{other}\"; export the scene again")),
-        };
-        let total = accessor.count.saturating_mul(width);
+    pub fn numbers(&mut self, accessor: &Accessor<'a>) -> Result<Numbers, String> {
+        let index = accessor.index();
+        let width = self.shape(accessor)?.multiplicity();
+        let count = accessor.count();
+        let total = count.saturating_mul(width);
         self.budget = self.budget.checked_sub(total).ok_or_else(|| {
-            format!("accessor {index} claims {} elements, more than can be real; reduce the instances or export the scene again", accessor.count)
+            format!("accessor {index} claims {count} elements, more than can be real; reduce the instances or export the scene again")
         })?;
-        let mut values = match accessor.buffer_view {
-            Some(view) => self.decode(index, accessor, view, width)?,
-            None => vec![0.0; total],
-        };
-        if let Some(sparse) = &accessor.sparse {
-            self.budget = self
-                .budget
-                .checked_sub(sparse.count.saturating_mul(width))
-                .ok_or("its sparse accessors claim more than can be real")?;
-            let part = |part: &SparsePart, component_type: u32, normalized: bool| Accessor {
-                byte_offset: part.byte_offset,
-                component_type,
-                normalized,
-                count: sparse.count,
-                ..Accessor::default()
-            };
-            let indices = part(&sparse.indices, sparse.indices.component_type, false);
-            let indices = self.decode(index, &indices, sparse.indices.buffer_view, 1)?;
-            let replacements = part(&sparse.values, accessor.component_type, accessor.normalized);
-            let replacements = self.decode(index, &replacements, sparse.values.buffer_view, width)?;
-            for (&at, replacement) in indices.iter().zip(replacements.chunks_exact(width)) {
-                let at = at as usize;
-                let slot = at.checked_mul(width).and_then(|start| values.get_mut(start..start + width));
-                slot.ok_or_else(|| {
-                    format!("accessor {index} replaces element {at} of {}; export the scene again", accessor.count)
-                })?
-                .copy_from_slice(replacement);
-            }
+        if count == 0 {
+            return Ok(Numbers { width, values: Vec::new() });
         }
-        Ok(Numbers { width, values })
+        if let Some(view) = accessor.view() {
+            self.check(index, &view, accessor.offset(), count, accessor.size())?;
+        }
+        if let Some(sparse) = accessor.sparse() {
+            self.check_sparse(accessor, &sparse)?;
+        }
+        let get = |buffer: Buffer<'a>| self.loaded(&buffer);
+        let is_normalized = accessor.normalized();
+        // The rule of the specification: signed normalized integers do not go below -1.
+        let scaled = |value: f64, one: f64| if is_normalized { (value / one).max(-1.0) } else { value };
+        let values = match accessor.data_type() {
+            DataType::I8 => decode(accessor, get, |v: i8| scaled(v.into(), 127.0)),
+            DataType::U8 => decode(accessor, get, |v: u8| scaled(v.into(), 255.0)),
+            DataType::I16 => decode(accessor, get, |v: i16| scaled(v.into(), 32767.0)),
+            DataType::U16 => decode(accessor, get, |v: u16| scaled(v.into(), 65535.0)),
+            DataType::U32 => decode(accessor, get, |v: u32| scaled(v.into(), u32::MAX.into())),
+            DataType::F32 => decode(accessor, get, |v: f32| v.into()),
+        };
+        // An accessor without a view is all zeros.
+        Ok(Numbers { width, values: values.unwrap_or_else(|| vec![0.0; total]) })
     }
 
-    /// The numbers a dense accessor describes.
-    fn decode(&mut self, index: usize, accessor: &Accessor, view: usize, width: usize) -> Result<Vec<f64>, String> {
-        type Decode = fn(&[u8]) -> f64;
-        let (size, largest, decode): (usize, f64, Decode) = match accessor.component_type {
-            5120 => (1, 127.0, |b| f64::from(b[0] as i8)),
-            5121 => (1, 255.0, |b| f64::from(b[0])),
-            5122 => (2, 32767.0, |b| f64::from(i16::from_le_bytes([b[0], b[1]]))),
-            5123 => (2, 65535.0, |b| f64::from(u16::from_le_bytes([b[0], b[1]]))),
-            5125 => (4, f64::from(u32::MAX), |b| f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
-            5126 => (4, 1.0, |b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
-            other => {
-                return Err(format!("accessor {index} has the unknown component type {other}; export the scene again"));
-            }
-        };
-        let bytes = self.view(view)?;
-        let element = size * width;
-        let stride = self.document.buffer_views[view]
-            .byte_stride
-            .filter(|&s| s >= element && accessor.count > 0)
-            .unwrap_or(element);
-        let needed = match accessor.count {
-            0 => 0,
-            count => (count - 1).saturating_mul(stride).saturating_add(element).saturating_add(accessor.byte_offset),
-        };
-        if needed > bytes.len() {
+    /// Whether so many elements of a size lie within a view: the crate trusts offsets, counts and strides.
+    fn check(
+        &mut self,
+        accessor: usize,
+        view: &View<'a>,
+        offset: usize,
+        count: usize,
+        size: usize,
+    ) -> Result<(), String> {
+        let stride = view.stride().unwrap_or(size);
+        let view_index = view.index();
+        let there = self.view(view)?.len();
+        if stride < size {
             return Err(format!(
-                "accessor {index} needs {needed} bytes of buffer view {view}, which has {}; get the whole file again",
-                bytes.len()
+                "accessor {accessor} has elements of {size} bytes, but buffer view {view_index} one every {stride}; export the scene again"
             ));
         }
-        let divisor = if accessor.normalized { largest } else { 1.0 };
-        let mut values = Vec::with_capacity(accessor.count * width);
-        for i in 0..accessor.count {
-            let at = accessor.byte_offset + i * stride;
-            // The rule of the specification: signed normalized integers do not go below -1.
-            let number = |b: &[u8]| if accessor.normalized { (decode(b) / divisor).max(-1.0) } else { decode(b) };
-            values.extend(bytes[at..at + element].chunks_exact(size).map(number));
+        let needed = (count - 1).saturating_mul(stride).saturating_add(size).saturating_add(offset);
+        if needed > there {
+            return Err(format!(
+                "accessor {accessor} needs {needed} bytes of buffer view {view_index}, which has {there}; get the whole file again"
+            ));
         }
-        Ok(values)
+        Ok(())
+    }
+
+    /// Whether the replaced elements of an accessor exist and come in order: the crate passes over others in silence.
+    fn check_sparse(&mut self, accessor: &Accessor<'a>, sparse: &Sparse<'a>) -> Result<(), String> {
+        let (index, count) = (accessor.index(), sparse.count());
+        self.budget = self
+            .budget
+            .checked_sub(count.saturating_mul(accessor.size()))
+            .ok_or("its sparse accessors claim more than can be real; export the scene again")?;
+        let (indices, values) = (sparse.indices(), sparse.values());
+        let size = indices.index_type().size();
+        self.check(index, &values.view(), values.offset(), count, accessor.size())?;
+        self.check(index, &indices.view(), indices.offset(), count, size)?;
+        let view = indices.view();
+        let bytes = &self.view(&view)?[indices.offset()..];
+        let stride = view.stride().unwrap_or(size);
+        let replaced = match indices.index_type() {
+            IndexType::U8 => SparseIndicesIter::U8(ItemIter::new(bytes, stride)),
+            IndexType::U16 => SparseIndicesIter::U16(ItemIter::new(bytes, stride)),
+            IndexType::U32 => SparseIndicesIter::U32(ItemIter::new(bytes, stride)),
+        };
+        let mut next = 0;
+        for at in replaced.take(count).map(|at| at as usize) {
+            if at < next || at >= accessor.count() {
+                return Err(format!(
+                    "accessor {index} replaces element {at} of {}, after element {}; export the scene again",
+                    accessor.count(),
+                    next
+                ));
+            }
+            next = at + 1;
+        }
+        Ok(())
     }
 }
 
-/// A sentence about an index that is out of range.
-pub(super) fn no_such(what: &str, index: usize, count: usize) -> String {
-    format!("it refers to {what} {index}, but there are {count}; export the scene again")
+/// All numbers of a checked accessor; `None` without any bytes.
+fn decode<'a, 's, T: Item + Copy>(
+    accessor: &Accessor<'a>,
+    get: impl Clone + Fn(Buffer<'a>) -> Option<&'s [u8]>,
+    number: impl Fn(T) -> f64,
+) -> Option<Vec<f64>> {
+    let accessor = accessor.clone();
+    Some(match accessor.dimensions() {
+        Dimensions::Scalar => Iter::<T>::new(accessor, get)?.map(number).collect(),
+        Dimensions::Vec2 => Iter::<[T; 2]>::new(accessor, get)?.flatten().map(number).collect(),
+        Dimensions::Vec3 => Iter::<[T; 3]>::new(accessor, get)?.flatten().map(number).collect(),
+        Dimensions::Vec4 => Iter::<[T; 4]>::new(accessor, get)?.flatten().map(number).collect(),
+        Dimensions::Mat2 => Iter::<[[T; 2]; 2]>::new(accessor, get)?.flatten().flatten().map(number).collect(),
+        Dimensions::Mat3 => Iter::<[[T; 3]; 3]>::new(accessor, get)?.flatten().flatten().map(number).collect(),
+        Dimensions::Mat4 => Iter::<[[T; 4]; 4]>::new(accessor, get)?.flatten().flatten().map(number).collect(),
+    })
 }
 
 /// What follows `data:`.

@@ -2,41 +2,37 @@
 
 use std::collections::BTreeSet;
 
+use gltf::json::Image as ImageFile;
 use serde_json::Value;
 
-use super::Document;
 use super::accessor::{Buffers, percent_decoded};
+use super::no_such;
 use crate::boundary::mtl;
 use crate::boundary::source::{Image, Materials};
 
-/// Takes the materials of a document.
-pub(super) fn read<'a>(
-    root: &Value,
-    document: &'a Document,
-    buffers: &mut Buffers<'a>,
-    warnings: &mut Vec<String>,
-) -> Materials {
-    let array = |key: &str| root.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
-    let strings = |key: &str| array(key).iter().filter_map(|v| v.as_str().map(str::to_owned)).collect::<Vec<_>>();
+/// Takes the materials out of a JSON; their images are still to come.
+pub(super) fn take(root: &mut Value) -> Materials {
+    let mut array = |key: &str| match root.as_object_mut().and_then(|root| root.remove(key)) {
+        Some(Value::Array(items)) => items,
+        _ => Vec::new(),
+    };
     let mut result = Materials {
         materials: array("materials"),
         textures: array("textures"),
         samplers: array("samplers"),
         ..Materials::default()
     };
-    for index in 0..document.images.len() {
-        result.images.push(image(index, document, buffers, warnings));
-    }
     let mut used = BTreeSet::new();
     for value in result.materials.iter().chain(&result.textures).chain(&result.samplers) {
         extensions(value, &mut used);
     }
-    let variants = root.get("extensions").and_then(|e| e.get("KHR_materials_variants"));
-    if let Some(variants) = variants {
+    if let Some(variants) = root.pointer("/extensions/KHR_materials_variants") {
         result.root_extensions.insert("KHR_materials_variants".into(), variants.clone());
         used.insert("KHR_materials_variants".into());
     }
-    result.extensions_required = strings("extensionsRequired").into_iter().filter(|name| used.contains(name)).collect();
+    let required = root.get("extensionsRequired").and_then(Value::as_array).into_iter().flatten();
+    let required = required.filter_map(|name| name.as_str().map(str::to_owned));
+    result.extensions_required = required.filter(|name| used.contains(name)).collect();
     result.extensions_used = used.into_iter().collect();
     result
 }
@@ -55,21 +51,29 @@ fn extensions(value: &Value, names: &mut BTreeSet<String>) {
     }
 }
 
-fn image<'a>(index: usize, document: &'a Document, buffers: &mut Buffers<'a>, warnings: &mut Vec<String>) -> Image {
-    let file = &document.images[index];
+/// The images of a document.
+pub(super) fn images<'a>(
+    document: &'a gltf::Document,
+    buffers: &mut Buffers<'a>,
+    warnings: &mut Vec<String>,
+) -> Vec<Image> {
+    let files = document.as_json().images.iter().enumerate();
+    files.map(|(index, file)| image(index, file, document, buffers, warnings)).collect()
+}
+
+fn image<'a>(
+    index: usize,
+    file: &'a ImageFile,
+    document: &'a gltf::Document,
+    buffers: &mut Buffers<'a>,
+    warnings: &mut Vec<String>,
+) -> Image {
     let by_uri = file.uri.as_deref().filter(|uri| !uri.starts_with("data:")).map(percent_decoded);
     let name = file.name.clone().or(by_uri).unwrap_or_else(|| format!("image {index}"));
-    let bytes = match (&file.uri, file.buffer_view) {
-        (Some(uri), _) => buffers.resource(uri).and_then(|bytes| buffers.spend(bytes.len()).map(|()| bytes.to_vec())),
-        (None, Some(view)) => buffers.view(view).and_then(|bytes| buffers.spend(bytes.len()).map(|()| bytes.to_vec())),
-        (None, None) => Err("it has no content".into()),
-    };
-    match bytes {
+    match bytes(file, document, buffers) {
         Ok(bytes) => {
-            let mime = mtl::mime_of(&bytes)
-                .map(str::to_owned)
-                .or_else(|| file.mime_type.clone())
-                .unwrap_or_else(|| "image/png".into());
+            let said = || file.mime_type.as_ref().map_or_else(|| "image/png".into(), |mime| mime.0.clone());
+            let mime = mtl::mime_of(&bytes).map_or_else(said, str::to_owned);
             Image { name, mime, bytes }
         }
         Err(why) => {
@@ -77,4 +81,18 @@ fn image<'a>(index: usize, document: &'a Document, buffers: &mut Buffers<'a>, wa
             mtl::white(&name)
         }
     }
+}
+
+fn bytes<'a>(file: &'a ImageFile, document: &'a gltf::Document, buffers: &mut Buffers<'a>) -> Result<Vec<u8>, String> {
+    let bytes = match (&file.uri, file.buffer_view) {
+        (Some(uri), _) => buffers.resource(uri)?.to_vec(),
+        (None, Some(view)) => {
+            let count = document.views().len();
+            let view = document.views().nth(view.value()).ok_or_else(|| no_such("buffer view", view.value(), count))?;
+            buffers.view(&view)?.to_vec()
+        }
+        (None, None) => return Err("it has no content".into()),
+    };
+    buffers.spend(bytes.len())?;
+    Ok(bytes)
 }

@@ -1,7 +1,8 @@
 //! glTF 2.0: `.glb`, `.gltf` with its buffers and images beside it or in data URIs.
 //!
-//! Own reading of the JSON rather than through a typed crate: materials, textures and extensions which nobody here knows are
-//! kept word for word for the export, and no index is believed.
+//! The `gltf` crate takes the container apart, knows the schema and decodes the accessors. It panics on what breaks the schema,
+//! so [`checked`] makes sure of every index before it, and [`accessor`] of every byte range. What the export writes again word for
+//! word (materials, textures, samplers and their extensions) stays JSON and never passes through its types.
 //!
 //! # What is read
 //!
@@ -10,192 +11,87 @@
 //! primitives of one node that share their accessors share their vertices.
 
 mod accessor;
+mod checked;
 mod material;
 mod primitive;
 mod scene;
 
+use std::borrow::Cow;
 use std::path::Path;
 
-use serde::Deserialize;
+use gltf::binary::{Error as Broken, Glb};
 use serde_json::Value;
 
 use super::Boundary;
-use crate::error::{Error, Result};
+use crate::error::Error;
 use accessor::Buffers;
 
 /// Geometry in these is packed by codecs that this program does not have.
 const PACKED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct Document {
-    scene: Option<usize>,
-    scenes: Vec<Scene>,
-    nodes: Vec<Node>,
-    meshes: Vec<Mesh>,
-    accessors: Vec<Accessor>,
-    buffer_views: Vec<BufferView>,
-    buffers: Vec<Buffer>,
-    skins: Vec<Skin>,
-    images: Vec<ImageFile>,
-    extensions_required: Vec<String>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Scene {
-    nodes: Vec<usize>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Node {
-    name: Option<String>,
-    children: Vec<usize>,
-    mesh: Option<usize>,
-    skin: Option<usize>,
-    matrix: Option<[f64; 16]>,
-    translation: Option<[f64; 3]>,
-    rotation: Option<[f64; 4]>,
-    scale: Option<[f64; 3]>,
-    weights: Option<Vec<f64>>,
-    extras: Option<Value>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Mesh {
-    name: Option<String>,
-    primitives: Vec<Primitive>,
-    weights: Option<Vec<f64>>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Primitive {
-    attributes: std::collections::BTreeMap<String, usize>,
-    indices: Option<usize>,
-    material: Option<usize>,
-    mode: Option<u32>,
-    targets: Vec<std::collections::BTreeMap<String, usize>>,
-    extensions: Option<Value>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct Accessor {
-    buffer_view: Option<usize>,
-    byte_offset: usize,
-    component_type: u32,
-    normalized: bool,
-    count: usize,
-    #[serde(rename = "type")]
-    shape: String,
-    sparse: Option<Sparse>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Sparse {
-    count: usize,
-    indices: SparsePart,
-    values: SparsePart,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct SparsePart {
-    buffer_view: usize,
-    byte_offset: usize,
-    component_type: u32,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct BufferView {
-    buffer: usize,
-    byte_offset: usize,
-    byte_length: usize,
-    byte_stride: Option<usize>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct Buffer {
-    uri: Option<String>,
-    byte_length: usize,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct Skin {
-    inverse_bind_matrices: Option<usize>,
-    joints: Vec<usize>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-struct ImageFile {
-    name: Option<String>,
-    uri: Option<String>,
-    mime_type: Option<String>,
-    buffer_view: Option<usize>,
-}
-
 /// Reads a glTF.
-pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary> {
-    let (text, binary) = container(bytes).map_err(|sentence| Error::in_file(path, sentence))?;
+pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary, Error> {
+    parse(path, bytes).map_err(|sentence| Error::in_file(path, sentence))
+}
+
+fn parse(path: &Path, bytes: &[u8]) -> Result<Boundary, String> {
+    let whole = with_own_length(bytes)?;
+    let container = if bytes.starts_with(b"glTF") { Some(Glb::from_slice(&whole).map_err(broken)?) } else { None };
+    let (text, binary) = container.as_ref().map_or((bytes, None), |glb| (&*glb.json, glb.bin.as_deref()));
     let text = super::format::text(text);
-    let malformed =
-        |why: serde_json::Error| Error::in_file(path, format!("its JSON is malformed ({why}); export the scene again"));
-    let root: Value = serde_json::from_str(text.trim_end_matches(['\0', ' ', '\n', '\r', '\t'])).map_err(malformed)?;
-    let document = Document::deserialize(&root).map_err(malformed)?;
-    if let Some(packed) =
-        PACKED.iter().find(|&&name| document.extensions_required.iter().any(|required| required == name))
-    {
-        return Err(Error::in_file(
-            path,
-            format!("its geometry is packed with {packed}; export it without mesh compression"),
-        ));
+    let mut root: Value =
+        serde_json::from_str(text.trim_end_matches(['\0', ' ', '\n', '\r', '\t'])).map_err(|why| malformed(&why))?;
+    let mut materials = material::take(&mut root);
+    let document = checked::document(root, materials.materials.len())?;
+    if let Some(packed) = PACKED.iter().find(|&&name| document.extensions_required().any(|required| required == name)) {
+        return Err(format!("its geometry is packed with {packed}; export it without mesh compression"));
     }
     let mut buffers = Buffers::new(path, &document, binary, bytes.len());
-    let mut boundary = scene::read(&document, &mut buffers).map_err(|sentence| Error::in_file(path, sentence))?;
-    boundary.source.materials = material::read(&root, &document, &mut buffers, &mut boundary.warnings);
-    let materials = boundary.source.materials.materials.len();
-    for part in &mut boundary.source.parts {
-        part.material = if (part.material as usize) < materials { part.material } else { super::source::NONE };
-    }
+    let mut boundary = scene::read(&document, &mut buffers)?;
+    materials.images = material::images(&document, &mut buffers, &mut boundary.warnings);
+    boundary.source.materials = materials;
     if boundary.regions.is_none() {
         boundary.regions_from_parts();
     }
     Ok(boundary)
 }
 
-/// The JSON and the binary chunk of a GLB; a `.gltf` is all JSON.
-fn container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
-    if !bytes.starts_with(b"glTF") {
-        return Ok((bytes, None));
-    }
-    let word = |at: usize| bytes.get(at..at + 4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]]));
-    match word(4) {
-        Some(2) => {}
-        Some(version) => return Err(format!("it is a GLB of version {version}; export it as glTF 2.0")),
-        None => return Err("the GLB ends in its header; get the whole file again".into()),
-    }
-    let mut chunks = [None, None];
-    let mut at = 12;
-    while let (Some(length), Some(kind)) = (word(at), word(at + 4)) {
-        let start = at + 8;
-        let chunk = start.checked_add(length as usize).and_then(|end| bytes.get(start..end));
-        let chunk = chunk.ok_or_else(|| {
-            format!("a chunk of {length} bytes is cut off after {}; get the whole file again", bytes.len() - start)
-        })?;
-        match kind {
-            0x4E4F_534A => chunks[0] = chunks[0].or(Some(chunk)),
-            0x004E_4942 => chunks[1] = chunks[1].or(Some(chunk)),
-            _ => {}
+/// A GLB whose header says how long the file is. Some writers leave that out; the lengths of the chunks say it as well.
+fn with_own_length(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
+    let mut whole = Cow::Borrowed(bytes);
+    if bytes.starts_with(b"glTF") {
+        let length = (bytes.len() as u32).to_le_bytes();
+        let said = bytes.get(8..12).ok_or("the GLB ends in its header; get the whole file again")?;
+        if said != length {
+            whole.to_mut()[8..12].copy_from_slice(&length);
         }
-        at = start + length as usize;
     }
-    Ok((chunks[0].ok_or("the GLB has no JSON chunk; get the whole file again")?, chunks[1]))
+    Ok(whole)
+}
+
+/// A sentence about a GLB that cannot be taken apart.
+fn broken(why: gltf::Error) -> String {
+    match why {
+        gltf::Error::Binary(Broken::Version(version)) => {
+            format!("it is a GLB of version {version}; export it as glTF 2.0")
+        }
+        gltf::Error::Binary(Broken::ChunkLength { length, length_read, .. }) => {
+            format!("a chunk of {length} bytes is cut off after {length_read}; get the whole file again")
+        }
+        gltf::Error::Binary(Broken::ChunkType(_) | Broken::UnknownChunkType(_)) => {
+            "the GLB is not one JSON chunk and one binary chunk; export the scene again".into()
+        }
+        _ => "the GLB ends within the header of a chunk; get the whole file again".into(),
+    }
+}
+
+/// A sentence about JSON that is none, or not that of a glTF. It may quote the file at any length.
+fn malformed(why: &serde_json::Error) -> String {
+    let why: String = why.to_string().chars().take(200).collect();
+    format!("its JSON is malformed ({why}); export the scene again")
+}
+
+/// A sentence about an index that is out of range.
+fn no_such(what: &str, index: usize, count: usize) -> String {
+    format!("it refers to {what} {index}, but there are {count}; export the scene again")
 }

@@ -4,9 +4,12 @@ use std::collections::HashMap;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
+use gltf::accessor::Dimensions;
+use gltf::mesh::{Mode, Semantic};
+use gltf::{Accessor, Mesh, Node, Primitive};
+
 use super::accessor::{Buffers, Numbers};
 use super::scene::{Joint, moved};
-use super::{Mesh, Node, Primitive};
 use crate::boundary::source::{NONE, Object, Part};
 use crate::boundary::{Attribute, Boundary, Regions};
 
@@ -29,65 +32,66 @@ pub(super) struct Gatherer {
 
 impl Gatherer {
     /// Adds what hangs at one node.
-    pub fn node(
+    pub fn node<'a>(
         &mut self,
-        node: &Node,
-        mesh: &Mesh,
+        node: &Node<'a>,
+        mesh: &Mesh<'a>,
         world: DMat4,
         joints: &[Joint],
-        buffers: &mut Buffers,
+        buffers: &mut Buffers<'a>,
     ) -> Result<(), String> {
-        let name = node.name.clone().or_else(|| mesh.name.clone()).unwrap_or_default();
-        self.boundary.source.objects.push(Object { name, extras: node.extras.clone() });
+        let name = node.name().or(mesh.name()).unwrap_or_default().to_owned();
+        let extras = node.extras().as_ref().and_then(|extras| serde_json::from_str(extras.get()).ok());
+        self.boundary.source.objects.push(Object { name, extras });
         let object = self.boundary.source.objects.len() as u32 - 1;
-        let weights = node.weights.as_deref().or(mesh.weights.as_deref()).unwrap_or_default();
-        let mut shared: HashMap<Vec<(&str, usize)>, u32> = HashMap::new();
-        for (index, primitive) in mesh.primitives.iter().enumerate() {
-            let mode = primitive.mode.unwrap_or(4);
-            if !(4..=6).contains(&mode) {
+        let weights = node.weights().or(mesh.weights()).unwrap_or_default();
+        let mut shared: HashMap<Vec<(Option<Semantic>, usize)>, u32> = HashMap::new();
+        for (index, primitive) in mesh.primitives().enumerate() {
+            let mode = primitive.mode();
+            if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
                 self.left_out += 1;
                 continue;
             }
             let in_primitive = |sentence: String| format!("primitive {index}: {sentence}");
-            let targets = primitive.targets.iter().flatten();
-            let key: Vec<_> =
-                primitive.attributes.iter().chain(targets).map(|(name, &accessor)| (name.as_str(), accessor)).collect();
+            let attributes = primitive.attributes().map(|(name, accessor)| (Some(name), accessor.index()));
+            let targets = primitive.morph_targets().filter_map(|target| target.positions());
+            let key: Vec<_> = attributes.chain(targets.map(|accessor| (None, accessor.index()))).collect();
             let first = match shared.get(&key) {
                 Some(&first) => first,
                 None => {
-                    let first = self.vertices(primitive, weights, world, joints, buffers).map_err(in_primitive)?;
+                    let first = self.vertices(&primitive, weights, world, joints, buffers).map_err(in_primitive)?;
                     shared.insert(key, first);
                     first
                 }
             };
             let part = Part {
                 object,
-                material: primitive.material.map_or(NONE, |m| m as u32),
-                extensions: variants(primitive),
+                material: primitive.material().index().map_or(NONE, |m| m as u32),
+                extensions: variants(&primitive),
             };
             let is_mirrored = joints.is_empty() && world.determinant() < 0.0;
-            self.triangles(primitive, mode, first, part, is_mirrored, buffers).map_err(in_primitive)?;
+            self.triangles(&primitive, mode, first, part, is_mirrored, buffers).map_err(in_primitive)?;
         }
         Ok(())
     }
 
     /// Appends the vertices of a primitive; the index of the first.
-    fn vertices(
+    fn vertices<'a>(
         &mut self,
-        primitive: &Primitive,
-        weights: &[f64],
+        primitive: &Primitive<'a>,
+        weights: &[f32],
         world: DMat4,
         joints: &[Joint],
-        buffers: &mut Buffers,
+        buffers: &mut Buffers<'a>,
     ) -> Result<u32, String> {
         let first = self.boundary.positions.len();
-        let position = *primitive.attributes.get("POSITION").ok_or("it has no POSITION; export the mesh again")?;
-        let mut places = triples(buffers.numbers(position)?)?;
+        let position = primitive.get(&Semantic::Positions).ok_or("it has no POSITION; export the mesh again")?;
+        let mut places = triples(buffers.numbers(&position)?)?;
         let count = places.len();
-        for (target, &weight) in primitive.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-            let Some(&accessor) = target.get("POSITION") else { continue };
-            let offsets = triples(buffers.numbers(accessor)?)?;
-            places.iter_mut().zip(offsets).for_each(|(place, offset)| *place += weight * offset);
+        for (target, &weight) in primitive.morph_targets().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            let Some(accessor) = target.positions() else { continue };
+            let offsets = triples(buffers.numbers(&accessor)?)?;
+            places.iter_mut().zip(offsets).for_each(|(place, offset)| *place += f64::from(weight) * offset);
         }
         let influences = influences(primitive, count, joints, buffers)?;
         let is_identity = world == DMat4::IDENTITY;
@@ -109,7 +113,9 @@ impl Gatherer {
         }
         self.uvs.resize(first + count, None);
         self.normals.resize(first + count, None);
-        for (name, &accessor) in &primitive.attributes {
+        let mut attributes: Vec<_> = primitive.attributes().map(|(name, values)| (name.to_string(), values)).collect();
+        attributes.sort_by(|(a, _), (b, _)| a.cmp(b));
+        for (name, accessor) in &attributes {
             self.attribute(name, accessor, first, count, buffers)?;
         }
         u32::try_from(first).map_err(|_| "the scene has more vertices than fit; export a part of it".into())
@@ -124,17 +130,21 @@ impl Gatherer {
     }
 
     /// Keeps one attribute of a primitive whose vertices start at `first`.
-    fn attribute(
+    fn attribute<'a>(
         &mut self,
         name: &str,
-        accessor: usize,
+        accessor: &Accessor<'a>,
         first: usize,
         count: usize,
-        buffers: &mut Buffers,
+        buffers: &mut Buffers<'a>,
     ) -> Result<(), String> {
         let is_kept =
             name == "NORMAL" || name.starts_with("TEXCOORD_") || name.starts_with("COLOR_") || name.starts_with('_');
         if !is_kept {
+            return Ok(());
+        }
+        if matches!(buffers.shape(accessor)?, Dimensions::Mat2 | Dimensions::Mat3 | Dimensions::Mat4) {
+            self.boundary.warnings.push(format!("the attribute {name} has matrices, which are left out"));
             return Ok(());
         }
         let numbers = buffers.numbers(accessor)?;
@@ -160,7 +170,7 @@ impl Gatherer {
                 return Err(format!("{name} has {} numbers for each vertex; export the mesh again", numbers.width));
             }
             (_, 1) => self.channel(name.into(), 0.0, first, numbers.values.iter().map(single)),
-            (_, width @ 2..=4) => {
+            (_, width) => {
                 let is_colour = name.starts_with("COLOR_");
                 let letters = if is_colour { ["r", "g", "b", "a"] } else { ["x", "y", "z", "w"] };
                 for (i, letter) in letters.iter().enumerate().take(width) {
@@ -173,7 +183,6 @@ impl Gatherer {
                     );
                 }
             }
-            _ => self.boundary.warnings.push(format!("the attribute {name} has matrices, which are left out")),
         }
         Ok(())
     }
@@ -191,22 +200,21 @@ impl Gatherer {
     }
 
     /// Appends the triangles of a primitive whose vertices start at `first`.
-    fn triangles(
+    fn triangles<'a>(
         &mut self,
-        primitive: &Primitive,
-        mode: u32,
+        primitive: &Primitive<'a>,
+        mode: Mode,
         first: u32,
         part: Part,
         is_mirrored: bool,
-        buffers: &mut Buffers,
+        buffers: &mut Buffers<'a>,
     ) -> Result<(), String> {
-        let position = primitive.attributes.get("POSITION").copied().unwrap_or_default();
-        let count = buffers.count(position)?;
+        let count = primitive.get(&Semantic::Positions).map_or(0, |position| position.count());
         buffers.spend(3 * count)?;
-        let indices: Vec<u32> = match primitive.indices {
+        let indices: Vec<u32> = match primitive.indices() {
             None => (0..count as u32).collect(),
             Some(accessor) => {
-                let numbers = buffers.numbers(accessor)?.values;
+                let numbers = buffers.numbers(&accessor)?.values;
                 if let Some((at, index)) = numbers.iter().enumerate().find(|&(_, &i)| !(i >= 0.0 && i < count as f64)) {
                     return Err(format!(
                         "index {at} refers to vertex {index}, but there are {count}; export the mesh again"
@@ -216,12 +224,12 @@ impl Gatherer {
             }
         };
         let corners: Vec<[u32; 3]> = match mode {
-            5 => indices
+            Mode::TriangleStrip => indices
                 .windows(3)
                 .enumerate()
                 .map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] })
                 .collect(),
-            6 => indices.windows(2).skip(1).map(|t| [indices[0], t[0], t[1]]).collect(),
+            Mode::TriangleFan => indices.windows(2).skip(1).map(|t| [indices[0], t[0], t[1]]).collect(),
             _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         };
         buffers.spend(9 * corners.len())?;
@@ -276,18 +284,17 @@ fn triples(numbers: Numbers) -> Result<Vec<DVec3>, String> {
 }
 
 /// `[vertices]` joints and their weights; empty without a skin.
-fn influences(
-    primitive: &Primitive,
+fn influences<'a>(
+    primitive: &Primitive<'a>,
     count: usize,
     joints: &[Joint],
-    buffers: &mut Buffers,
+    buffers: &mut Buffers<'a>,
 ) -> Result<Vec<Vec<(usize, f64)>>, String> {
     let mut result = if joints.is_empty() { Vec::new() } else { vec![Vec::new(); count] };
     for set in 0.. {
-        let accessors =
-            (primitive.attributes.get(&format!("JOINTS_{set}")), primitive.attributes.get(&format!("WEIGHTS_{set}")));
-        let (Some(&of_joints), Some(&of_weights), false) = (accessors.0, accessors.1, joints.is_empty()) else { break };
-        let (indices, weights) = (buffers.numbers(of_joints)?, buffers.numbers(of_weights)?);
+        let accessors = (primitive.get(&Semantic::Joints(set)), primitive.get(&Semantic::Weights(set)));
+        let (Some(of_joints), Some(of_weights), false) = (accessors.0, accessors.1, joints.is_empty()) else { break };
+        let (indices, weights) = (buffers.numbers(&of_joints)?, buffers.numbers(&of_weights)?);
         if indices.values.len() != weights.values.len() || indices.count() != count {
             return Err(format!("JOINTS_{set} and WEIGHTS_{set} differ in length; export the mesh again"));
         }
@@ -309,6 +316,6 @@ fn influences(
 
 /// The one extension of a primitive that still means something after baking.
 fn variants(primitive: &Primitive) -> Option<serde_json::Value> {
-    let variants = primitive.extensions.as_ref()?.get("KHR_materials_variants")?;
+    let variants = primitive.extension_value("KHR_materials_variants")?;
     Some(serde_json::json!({ "KHR_materials_variants": variants }))
 }
