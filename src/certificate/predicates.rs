@@ -71,7 +71,7 @@ pub fn triangles_cross(s: &Triangle, t: &Triangle) -> bool {
         0 => disjoint_cross(s, t),
         1 => vertex_sharing_cross(s, t),
         2 => edge_sharing_cross(s, t),
-        _ => true,
+        _ => !degenerate(s) && !degenerate(t),
     }
 }
 

@@ -382,11 +382,11 @@ fn positive([a, b, c, d]: [Vec3A; 4]) -> bool {
     orientation(a.as_dvec3(), b.as_dvec3(), c.as_dvec3(), d.as_dvec3()) > 0
 }
 
-/// Shortens steps longer than `most`, in cells.
-pub fn limit(current: &[Vec3A], proposed: &mut [Vec3A], most: f32) {
-    proposed.par_iter_mut().zip(current).with_min_len(CHUNK).for_each(|(p, x)| {
+/// Shortens steps longer than `most`, per node, in cells.
+pub fn limit(current: &[Vec3A], proposed: &mut [Vec3A], most: impl Fn(usize) -> f32 + Sync) {
+    proposed.par_iter_mut().zip(current).enumerate().with_min_len(CHUNK).for_each(|(i, (p, x))| {
         let step = *p - *x;
-        let length = step.length();
+        let (length, most) = (step.length(), most(i));
         if length > most {
             *p = *x + step * (most / length);
         }

@@ -34,7 +34,8 @@ pub use guard::{Guarded, Shell, Watch};
 /// (measured: the rotations, not the solve, are what converges slowly).
 const GLOBAL_STEPS: [u32; 2] = [1, 3];
 
-/// No node moves further than this in one iteration, in cells: half a cell, so that a wall of one cell is not skipped.
+/// No node moves further than this part of its radius in one iteration (half a cell where cells keep their size), so that
+/// a wall of one cell is not skipped by one.
 const STEP_LIMIT: f32 = 0.5;
 
 /// The constant part of the collision optimization: what depends on complex and importance alone.
@@ -192,7 +193,7 @@ fn remove_rigid_motion(positions: &[Vec3A], step: &mut [Vec3A]) {
     step.par_iter_mut().zip(positions).with_min_len(CHUNK).for_each(|(d, x)| *d -= drift + spin.cross(*x - centre));
 }
 
-/// Guard: takes of the proposed step what stays injective. Returns the new positions' largest motion in cells and what
+/// Guard: takes of the proposed step what stays injective. `holds` is kept from step to step. Returns the new positions' largest motion in cells and what
 /// was held back.
 pub fn guard_step(
     complex: &Complex,
@@ -200,10 +201,11 @@ pub fn guard_step(
     shells: &mut [Shell],
     positions: &mut Vec<Vec3A>,
     mut proposed: Vec<Vec3A>,
+    holds: &mut Vec<u8>,
 ) -> (f32, Guarded) {
-    guard::limit(positions, &mut proposed, STEP_LIMIT);
+    guard::limit(positions, &mut proposed, |i| STEP_LIMIT * asked.radius[i].min(1.0));
     let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
-    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch);
+    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
     let motion = positions
         .par_iter()
         .zip(&proposed)

@@ -129,6 +129,11 @@ impl Binding {
         self.weights.iter().position(|w| !fine(w)).map_or(Ok(()), Err)
     }
 
+    /// The first vertex of a triangle that is bound to nothing. There is none: the lattice covers the surface.
+    pub fn unbound(&self, boundary: &Boundary) -> Option<u32> {
+        boundary.triangles.iter().flatten().copied().find(|&v| self.weights[v as usize] == [0.0; 4])
+    }
+
     /// B' of a state, in source units, rounded as it will be written.
     pub fn apply(&self, nodes: &[Vec3A]) -> Vec<DVec3> {
         (0..self.nodes.len()).into_par_iter().with_min_len(VERTICES_PER_TASK).map(|v| self.vertex(v, nodes)).collect()
@@ -138,6 +143,9 @@ impl Binding {
         let mut moved = DVec3::ZERO;
         for (&i, &w) in self.nodes[v].iter().zip(&self.weights[v]) {
             moved += f64::from(w) * (nodes[i as usize].as_dvec3() - self.rest_nodes[i as usize].as_dvec3());
+        }
+        if moved == DVec3::ZERO {
+            return self.rest[v];
         }
         let p = self.rest[v] + self.grid.cell_size * moved;
         if self.single { p.as_vec3().as_dvec3() } else { p }

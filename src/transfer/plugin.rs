@@ -4,9 +4,10 @@ use bevy::prelude::*;
 
 use super::Binding;
 use crate::{
+    Error,
     collision::{Shell, plugin::Shells},
     diagnostics::Stopwatch,
-    schedule::{Domain, Solve, Stage},
+    schedule::{Domain, Failure, Solve, Stage},
     voxel::plugin::Lattice,
 };
 
@@ -31,9 +32,14 @@ fn bind_new(
     mut commands: Commands,
     mut lattices: Query<(Entity, &Domain, &Lattice, &mut Shells), Without<Bound>>,
     mut watch: ResMut<Stopwatch>,
+    mut failure: ResMut<Failure>,
 ) {
     for (entity, domain, Lattice(complex), mut shells) in &mut lattices {
         let binding = watch.time("transfer", || Binding::new(&domain.boundary, complex));
+        if let Some(vertex) = binding.unbound(&domain.boundary) {
+            failure.0 = Some(Error::Fault(format!("vertex {vertex} lies outside the lattice made for it")));
+            return;
+        }
         let shell = watch.time("input", || Shell::boundary(&domain.boundary, binding.clone(), complex));
         commands.entity(entity).insert((Bound(binding), SelfIntersections(shell.inherited())));
         shells.0.push(shell);

@@ -65,9 +65,11 @@ impl Grid {
             )));
         }
         let cell_size = longest / (f64::from(resolution) - 2.0 * MARGIN);
-        let cells = (extent / cell_size + 2.0 * MARGIN).ceil().max(DVec3::ONE);
+        // The longest axis gives the resolution but for rounding, which must not add a cell.
+        let most = DVec3::splat(f64::from(resolution));
+        let cells = (extent / cell_size + 2.0 * MARGIN).ceil().max(DVec3::ONE).min(most);
         let origin = (low + high) * 0.5 - cells * (0.5 * cell_size);
-        Ok(Self { origin, cell_size, cells: cells.as_uvec3().min(UVec3::splat(resolution)) })
+        Ok(Self { origin, cell_size, cells: cells.as_uvec3() })
     }
 
     /// Source units to cells.
