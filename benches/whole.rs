@@ -6,7 +6,10 @@
 
 mod common;
 
-use std::time::Instant;
+use std::{
+    sync::atomic::{AtomicUsize, Ordering},
+    time::Instant,
+};
 
 use common::{Subject, Table, human_seconds, resolutions};
 use homunculus::{
@@ -31,76 +34,118 @@ const FULL_UP_TO: u32 = 64;
 /// cost more the further the growth is, have the same share.
 const SAMPLED_ITERATIONS: usize = 100;
 
-struct Quiet;
+/// Counts iterations: those of the growth, and those of the settling at λ = 1.
+#[derive(Default)]
+struct Counter {
+    growth: AtomicUsize,
+    settling: AtomicUsize,
+}
 
-impl Observer for Quiet {
-    fn progress(&self, _: &Progress) {}
+impl Observer for Counter {
+    fn progress(&self, p: &Progress) {
+        match p.stage {
+            "growth" => self.growth.fetch_add(1, Ordering::Relaxed),
+            "settling" => self.settling.fetch_add(1, Ordering::Relaxed),
+            _ => 0,
+        };
+    }
     fn cancelled(&self) -> bool {
         false
     }
+}
+
+/// Wall time, and time of all threads together where the system tells: the one to look at where others compute too.
+#[derive(Clone, Copy)]
+struct Cost {
+    wall: f64,
+    cpu: Option<f64>,
+}
+
+impl Cost {
+    fn of<T>(work: impl FnOnce() -> T) -> (T, Self) {
+        let (start, cpu_before) = (Instant::now(), cpu_seconds());
+        let result = work();
+        let cpu = cpu_before.zip(cpu_seconds()).map(|(before, after)| after - before);
+        (result, Self { wall: start.elapsed().as_secs_f64(), cpu })
+    }
+
+    fn plus(self, factor: f64, other: Self) -> Self {
+        let cpu = self.cpu.zip(other.cpu).map(|(a, b)| a + factor * b);
+        Self { wall: self.wall + factor * other.wall, cpu }
+    }
+}
+
+/// User and system time of this process from Linux' `/proc/self/stat`, which counts in hundredths.
+fn cpu_seconds() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // Fields after the command's name, which may hold spaces: the state is the first, times are the 12th and 13th.
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks: u64 = fields.get(11)?.parse::<u64>().ok()? + fields.get(12)?.parse::<u64>().ok()?;
+    Some(ticks as f64 / 100.0)
 }
 
 /// One resolution, both ways.
 struct Comparison {
     resolution: u32,
     ours: Outcome,
-    seconds: f64,
+    cost: Cost,
+    iterations: [usize; 2],
     peak_memory: Option<u64>,
     reference: Timed,
 }
 
-/// Seconds of the reference.
+/// The reference.
 struct Timed {
-    seconds: f64,
+    cost: Cost,
     extrapolated: bool,
     /// Inverted elements and crossings at the end, where it was run to the end.
     faults: Option<[usize; 2]>,
 }
 
-fn run(subject: &Subject, resolution: u32, fidelity: f32, reference: Option<Reference>) -> (Outcome, f64) {
+fn run(subject: &Subject, resolution: u32, fidelity: f32, reference: Option<Reference>) -> (Outcome, Cost, [usize; 2]) {
     let settings = Settings { resolution, fidelity, keys: 8, reference };
-    let start = Instant::now();
-    let outcome = warp(&subject.boundary, &subject.importance(&[]), &settings, &Quiet).expect("a warp");
-    (outcome, start.elapsed().as_secs_f64())
+    let (importance, counter) = (subject.importance(&[]), Counter::default());
+    let (outcome, cost) = Cost::of(|| warp(&subject.boundary, &importance, &settings, &counter).expect("a warp"));
+    (outcome, cost, [counter.growth.into_inner(), counter.settling.into_inner()])
 }
 
 fn compare(subject: &Subject, resolution: u32) -> Comparison {
     eprintln!("warping at {resolution} cells");
-    let (ours, seconds) = run(subject, resolution, FIDELITY, None);
+    let (ours, cost, iterations) = run(subject, resolution, FIDELITY, None);
     // Resolutions ascend and ours comes before the reference, so what the process has held at most is of this warp.
     let peak_memory = peak_memory_bytes();
     eprintln!("reference at {resolution} cells");
     let in_full = resolution <= FULL_UP_TO || std::env::var("HOMUNCULUS_FULL").is_ok_and(|v| v == "1");
     let reference = if in_full {
-        let (outcome, seconds) = run(subject, resolution, FIDELITY, Some(Reference::Fig5));
+        let (outcome, cost, _) = run(subject, resolution, FIDELITY, Some(Reference::Fig5));
         let certificate = &outcome.certificate;
         let faults = Some([certificate.inverted(), certificate.crossings() + certificate.surface_crossings()]);
-        Timed { seconds, extrapolated: false, faults }
+        Timed { cost, extrapolated: false, faults }
     } else {
-        Timed { seconds: extrapolated(subject, resolution), extrapolated: true, faults: None }
+        Timed { cost: extrapolated(subject, resolution), extrapolated: true, faults: None }
     };
-    Comparison { resolution, ours, seconds, peak_memory, reference }
+    Comparison { resolution, ours, cost, iterations, peak_memory, reference }
 }
 
-/// Seconds of all that comes before the iterations, and [`SAMPLED_ITERATIONS`] scaled to all. The reference's own
-/// certificates are left out: they are few against the iterations, and leaving them out is in its favour.
-fn extrapolated(subject: &Subject, resolution: u32) -> f64 {
-    let start = Instant::now();
-    let complex = voxelize(&subject.boundary, resolution).expect("a lattice");
-    let importance = subject.node_importance(&complex, &[]);
-    let mut linear = complex.rest.clone();
-    EdgeSolver::new(&complex).solve(&complex, &importance, &mut linear);
-    let problem = Problem::new(&complex, &importance, FIDELITY);
-    let before = start.elapsed().as_secs_f64();
-
-    let start = Instant::now();
-    let mut x = complex.rest.clone();
-    for k in 0..SAMPLED_ITERATIONS {
-        let lambda = k as f32 / (SAMPLED_ITERATIONS - 1) as f32;
-        x = fig5(&complex, &problem, &linear, Reading::Sensible, lambda, &x);
-    }
+/// What comes before the iterations, and [`SAMPLED_ITERATIONS`] scaled to all. The reference's own certificates are left
+/// out: they are few against the iterations, and leaving them out is in its favour.
+fn extrapolated(subject: &Subject, resolution: u32) -> Cost {
+    let ((complex, linear, problem), before) = Cost::of(|| {
+        let complex = voxelize(&subject.boundary, resolution).expect("a lattice");
+        let importance = subject.node_importance(&complex, &[]);
+        let mut linear = complex.rest.clone();
+        EdgeSolver::new(&complex).solve(&complex, &importance, &mut linear);
+        let problem = Problem::new(&complex, &importance, FIDELITY);
+        (complex, linear, problem)
+    });
+    let (x, sampled) = Cost::of(|| {
+        (0..SAMPLED_ITERATIONS).fold(complex.rest.clone(), |x, k| {
+            let lambda = k as f32 / (SAMPLED_ITERATIONS - 1) as f32;
+            fig5(&complex, &problem, &linear, Reading::Sensible, lambda, &x)
+        })
+    });
     assert!(x.iter().all(|p| p.is_finite()), "the reference diverged: its time would say nothing");
-    before + start.elapsed().as_secs_f64() * (ITERATIONS as f64 / SAMPLED_ITERATIONS as f64)
+    before.plus(ITERATIONS as f64 / SAMPLED_ITERATIONS as f64, sampled)
 }
 
 fn seconds_of(outcome: &Outcome, stage: &str) -> f64 {
@@ -129,11 +174,18 @@ fn print_comparison(all: &[Comparison]) {
     let mut table = Table::new("whole warp at", all.iter().map(|c| c.resolution.to_string()));
     let mut row = |name: &str, value: &dyn Fn(&Comparison) -> String| table.row(name, all.iter().map(value));
     row("nodes", &|c| c.ours.domain.nodes.to_string());
-    row("ours", &|c| human_seconds(c.seconds));
-    row("Fig. 5, 1000 iterations", &|c| {
-        format!("{}{}", human_seconds(c.reference.seconds), if c.reference.extrapolated { "*" } else { "" })
+    row("ours: growth + settling", &|c| format!("{} + {}", c.iterations[0], c.iterations[1]));
+    let star = |c: &Comparison| if c.reference.extrapolated { "*" } else { "" };
+    let cpu = |cost: Cost| cost.cpu.map_or("–".into(), human_seconds);
+    row("ours", &|c| human_seconds(c.cost.wall));
+    row("Fig. 5, 1000 iterations", &|c| format!("{}{}", human_seconds(c.reference.cost.wall), star(c)));
+    row("Fig. 5 / ours", &|c| format!("{:.1}×", c.reference.cost.wall / c.cost.wall));
+    row("ours, all threads", &|c| cpu(c.cost));
+    row("Fig. 5, all threads", &|c| format!("{}{}", cpu(c.reference.cost), star(c)));
+    row("Fig. 5 / ours, all threads", &|c| {
+        let ratio = c.reference.cost.cpu.zip(c.cost.cpu).map(|(theirs, ours)| theirs / ours);
+        ratio.map_or("–".into(), |ratio| format!("{ratio:.1}×"))
     });
-    row("Fig. 5 / ours", &|c| format!("{:.1}×", c.reference.seconds / c.seconds));
     row("ours: certified", &|c| c.ours.frames.iter().all(|f| f.certificate.certified()).to_string());
     row("Fig. 5: inverted + crossing", &|c| c.reference.faults.map_or("–".into(), |[i, x]| format!("{i} + {x}")));
     row("certificate / solve", &|c| {
@@ -162,8 +214,10 @@ fn print_growth(all: &[Comparison]) {
         table.row(name, pairs().map(|c| format!("{:.2}×", value(&c[1]) / value(&c[0]))));
     };
     row("nodes", &|c| c.ours.domain.nodes as f64);
-    row("ours", &|c| c.seconds);
-    row("Fig. 5", &|c| c.reference.seconds);
+    row("ours", &|c| c.cost.wall);
+    row("ours, all threads", &|c| c.cost.cpu.unwrap_or(f64::NAN));
+    row("Fig. 5", &|c| c.reference.cost.wall);
+    row("Fig. 5, all threads", &|c| c.reference.cost.cpu.unwrap_or(f64::NAN));
     for (stage, _) in &all[0].ours.seconds {
         row(&format!("ours: {stage}"), &|c| seconds_of(&c.ours, stage));
     }
@@ -171,7 +225,7 @@ fn print_growth(all: &[Comparison]) {
 }
 
 fn print_fidelity(subject: &Subject, middle: &Outcome) {
-    let (high, _) = run(subject, JUDGED, 0.9, None);
+    let (high, ..) = run(subject, JUDGED, 0.9, None);
     let mut table = Table::new(
         &format!("at {JUDGED} cells"),
         ["median", "p95", "max", "p95", "p99", "certified"].map(String::from),
