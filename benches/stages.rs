@@ -180,14 +180,14 @@ fn measure_collision(bench: &mut Bench, complex: &Complex, midway: &LazyCell<Mid
         "guard",
         || (state(), LazyCell::force(proposed).clone()),
         |((_, positions, skin), proposed)| {
-            guard_step(complex, &midway.asked, skin, positions, std::mem::take(proposed))
+            guard_step(complex, &midway.asked, skin, positions, std::mem::take(proposed), &mut Vec::new())
         },
     );
     bench.measure("collision", "iteration", state, |(rotations, positions, skin)| {
         let targets = midway.local(complex, rotations);
         let contacts = midway.contact(complex);
         let proposed = midway.global(complex, &targets, &contacts);
-        guard_step(complex, &midway.asked, skin, positions, proposed)
+        guard_step(complex, &midway.asked, skin, positions, proposed, &mut Vec::new())
     });
 }
 

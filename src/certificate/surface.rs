@@ -11,6 +11,55 @@ use super::{
 /// Pairs per parallel task.
 const PAIRS_PER_TASK: usize = 1024;
 
+/// A triangle with its plane, for proving others apart from it.
+#[derive(Debug, Clone, Copy)]
+struct Plane {
+    at: [Vec3A; 3],
+    /// `(b − a) × (c − a)`.
+    normal: DVec3,
+    /// Bounds the rounding of `normal · (p − a)`, per largest coordinate of `p − a`: the same 1e-14 of the permanent as
+    /// in [`orientation`](super::orientation), with room for the two forms' different order of sums.
+    error: f64,
+}
+
+impl Plane {
+    #[inline]
+    fn of(at: [Vec3A; 3]) -> Self {
+        let [a, b, c] = at.map(|p| p.as_dvec3());
+        let (u, v) = (b - a, c - a);
+        let (p, q) = (u.abs(), v.abs());
+        let permanent = p.y * q.z + p.z * q.y + p.z * q.x + p.x * q.z + p.x * q.y + p.y * q.x;
+        Self { at, normal: u.cross(v), error: 1.0e-14 * permanent }
+    }
+
+    #[inline]
+    fn bounds(&self) -> Bounds {
+        let [a, b, c] = self.at;
+        Bounds { low: a.min(b).min(c), high: a.max(b).max(c) }
+    }
+
+    /// Whether all corners of `other` that are not shared lie strictly, and provably, on one side of this plane.
+    #[inline]
+    fn is_apart(&self, other: &Self, own_ids: &[u32; 3], other_ids: &[u32; 3]) -> bool {
+        let origin = self.at[0].as_dvec3();
+        let (mut above, mut below) = (false, false);
+        for (corner, id) in other.at.iter().zip(other_ids) {
+            if own_ids.contains(id) {
+                continue;
+            }
+            let offset = corner.as_dvec3() - origin;
+            let side = self.normal.dot(offset);
+            let bound = self.error * offset.abs().max_element();
+            above |= side > bound;
+            below |= side < -bound;
+            if !(side.abs() > bound) {
+                return false;
+            }
+        }
+        above != below
+    }
+}
+
 /// A triangle surface to be checked in many states.
 #[derive(Debug, Clone)]
 pub struct Surface {
@@ -53,17 +102,32 @@ impl Surface {
 
     /// Of `pairs`, those that cross in a state, in the order given. Exact.
     pub fn crossing_pairs(&self, pairs: &[(u32, u32)], positions: &[Vec3A]) -> Vec<(u32, u32)> {
-        pairs
+        let crosses = |s: u32, t: u32| triangles_cross(&self.triangle(s, positions), &self.triangle(t, positions));
+        let filtered = |keep: &(dyn Fn(u32, u32) -> bool + Sync)| {
+            pairs.par_iter().with_min_len(PAIRS_PER_TASK).filter(|&&(s, t)| keep(s, t)).copied().collect()
+        };
+        if pairs.len() < self.triangles.len() {
+            let plane = |t: u32| Plane::of(self.triangles[t as usize].map(|v| positions[v as usize]));
+            return filtered(&|s, t| self.may_cross(s, t, &plane(s), &plane(t)) && crosses(s, t));
+        }
+        // Most pairs are neighbours that a plane sets apart, and each triangle is in about eight: its plane is kept.
+        let planes: Vec<Plane> = self
+            .triangles
             .par_iter()
             .with_min_len(PAIRS_PER_TASK)
-            .filter(|&&(s, t)| self.pair_crosses(s, t, positions))
-            .copied()
-            .collect()
+            .map(|t| Plane::of(t.map(|v| positions[v as usize])))
+            .collect();
+        filtered(&|s, t| self.may_cross(s, t, &planes[s as usize], &planes[t as usize]) && crosses(s, t))
     }
 
-    fn pair_crosses(&self, s: u32, t: u32, positions: &[Vec3A]) -> bool {
-        let box_of = |t: u32| Bounds::of(self.triangles[t as usize].map(|v| positions[v as usize]));
-        box_of(s).meets(&box_of(t)) && triangles_cross(&self.triangle(s, positions), &self.triangle(t, positions))
+    /// False only where boxes or the plane of one triangle prove two triangles apart but for what they share.
+    #[inline]
+    fn may_cross(&self, s: u32, t: u32, of_s: &Plane, of_t: &Plane) -> bool {
+        if !of_s.bounds().meets(&of_t.bounds()) {
+            return false;
+        }
+        let (of_s_ids, of_t_ids) = (&self.identities[s as usize], &self.identities[t as usize]);
+        !of_s.is_apart(of_t, of_s_ids, of_t_ids) && !of_t.is_apart(of_s, of_t_ids, of_s_ids)
     }
 
     /// All crossing pairs of a state, sorted, each as (lower, higher). Exact.

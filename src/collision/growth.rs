@@ -7,11 +7,14 @@ const LN_SIZE_PER_STEP: f32 = 0.12;
 /// Steps of λ at the least: the film's own keyframes.
 pub const LEAST_STEPS: usize = 20;
 
-/// Iterations at each λ below 1.
-const ITERATIONS_PER_STEP: u32 = 4;
+/// Iterations at each λ below 1: on the way, and where the state becomes a keyframe.
+const ITERATIONS_PER_STEP: [u32; 2] = [2, 4];
 
 /// Iterations at λ = 1 at most.
 const SETTLING_ITERATIONS: u32 = 80;
+
+/// Iterations at λ = 1 at least.
+const LEAST_SETTLING: u32 = 8;
 
 /// At λ = 1 the state is settled when no node moves further than this in an iteration, in cells.
 const SETTLED_MOTION: f32 = 0.02;
@@ -21,6 +24,8 @@ const SETTLED_MOTION: f32 = 0.02;
 pub struct Growth {
     /// λ of each step, ascending, the last 1.
     steps: Vec<f32>,
+    /// λ of keyframes are multiples of 1 / keys.
+    keys: usize,
     step: usize,
     iteration: u32,
     motion: f32,
@@ -44,7 +49,7 @@ impl Growth {
             }
             steps.push(b);
         }
-        Self { steps, step: 0, iteration: 0, motion: f32::INFINITY }
+        Self { steps, keys: keys.max(1), step: 0, iteration: 0, motion: f32::INFINITY }
     }
 
     /// λ now.
@@ -63,13 +68,18 @@ impl Growth {
         self.motion = motion;
     }
 
+    /// Whether the state at this λ becomes a keyframe.
+    pub fn is_key(&self) -> bool {
+        let key = self.lambda() * self.keys as f32;
+        (key - key.round()).abs() < 1.0e-3
+    }
+
     /// Whether the state at this λ is as good as it gets: time for a keyframe.
     pub fn settled(&self) -> bool {
         if self.step + 1 < self.steps.len() {
-            self.iteration >= ITERATIONS_PER_STEP
+            self.iteration >= ITERATIONS_PER_STEP[usize::from(self.is_key())]
         } else {
-            self.iteration >= SETTLING_ITERATIONS
-                || (self.iteration >= ITERATIONS_PER_STEP && self.motion < SETTLED_MOTION)
+            self.iteration >= SETTLING_ITERATIONS || (self.iteration >= LEAST_SETTLING && self.motion < SETTLED_MOTION)
         }
     }
 
@@ -94,7 +104,7 @@ impl Growth {
     pub fn fraction(&self) -> f32 {
         let last = self.steps.len().saturating_sub(1).max(1) as f32;
         let within = self.iteration as f32
-            / if self.step as f32 >= last { SETTLING_ITERATIONS } else { ITERATIONS_PER_STEP } as f32;
+            / if self.step as f32 >= last { SETTLING_ITERATIONS } else { ITERATIONS_PER_STEP[1] } as f32;
         if self.step as f32 >= last { 0.8 + 0.2 * within.min(1.0) } else { 0.8 * (self.step as f32 + within) / last }
     }
 }

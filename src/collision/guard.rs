@@ -256,6 +256,9 @@ impl Watch {
 }
 
 /// Makes `proposed` valid by drawing nodes back towards `current`. `size` is `[cells]`, the size asked for now.
+///
+/// `holds` is `[nodes]` how often each node's step was halved, or empty: what had to be held in the last step starts a
+/// little freer in this one, instead of all over again.
 pub fn guard(
     complex: &Complex,
     shells: &mut [Shell],
@@ -263,17 +266,21 @@ pub fn guard(
     current: &[Vec3A],
     proposed: &mut [Vec3A],
     watch: Watch,
+    holds: &mut Vec<u8>,
 ) -> Guarded {
     let near: Vec<Vec<(u32, u32)>> = shells.iter_mut().map(|s| s.near_pairs(current, proposed)).collect();
     let full: Vec<Vec3A> = proposed.to_vec();
     let mut guarded = Guarded::default();
+    holds.resize(complex.nodes(), 0);
+    for hold in holds.iter_mut() {
+        *hold = hold.saturating_sub(1);
+    }
+    let step = Step { complex, shells, near: &near, size, current, watch };
     for whole in WHOLE_STEPS {
-        for ((p, x), f) in proposed.iter_mut().zip(current).zip(&full) {
-            *p = *x + whole * (*f - *x);
-        }
-        let held = hold_back(complex, shells, &near, size, current, proposed, watch, &mut guarded.rounds);
-        if let Some(held) = held {
-            guarded.held_back = if whole < 1.0 { complex.nodes() as u32 } else { held };
+        let shortened: Vec<Vec3A> = current.iter().zip(&full).map(|(x, f)| *x + whole * (*f - *x)).collect();
+        let target = if whole < 1.0 { &shortened } else { &full };
+        if step.hold_back(target, proposed, holds, &mut guarded.rounds) {
+            guarded.held_back = holds.iter().filter(|&&h| h > 0).count() as u32;
             return guarded;
         }
     }
@@ -282,55 +289,67 @@ pub fn guard(
     guarded
 }
 
-/// Draws nodes back until the step is valid; how many were held, or `None` if that takes too many rounds.
-#[expect(clippy::too_many_arguments, reason = "the inner loop of `guard`, with its state")]
-fn hold_back(
-    complex: &Complex,
-    shells: &[Shell],
-    near: &[Vec<(u32, u32)>],
-    size: &[f32],
-    current: &[Vec3A],
-    proposed: &mut [Vec3A],
+/// A step to be made valid.
+struct Step<'a> {
+    complex: &'a Complex,
+    shells: &'a [Shell],
+    near: &'a [Vec<(u32, u32)>],
+    size: &'a [f32],
+    current: &'a [Vec3A],
     watch: Watch,
-    rounds: &mut u32,
-) -> Option<u32> {
-    let full: Vec<Vec3A> = proposed.to_vec();
-    let mut halved = vec![0_u8; complex.nodes()];
-    let mut moved: Option<Vec<bool>> = None;
-    for _ in 0..MOST_ROUNDS {
-        let mut marked = Vec::new();
-        for &part in watch.parts() {
-            let state: Cow<'_, [Vec3A]> =
-                if part < 1.0 { Cow::Owned(blend(current, proposed, part)) } else { Cow::Borrowed(&*proposed) };
-            marked.extend(bad_cells(complex, size, current, &state, moved.as_deref()));
-            for (shell, near) in shells.iter().zip(near) {
-                shell.mark_crossings(near, &state, moved.as_deref(), &mut marked);
-            }
+}
+
+impl Step<'_> {
+    /// Where a node goes that was halved so often.
+    fn held(&self, i: usize, full: &[Vec3A], halved: u8) -> Vec3A {
+        match halved {
+            0 => full[i],
+            h if h > HALVINGS => self.current[i],
+            h => self.current[i] + 0.5_f32.powi(i32::from(h)) * (full[i] - self.current[i]),
         }
-        if marked.is_empty() {
-            return Some(halved.iter().filter(|&&h| h > 0).count() as u32);
-        }
-        *rounds += 1;
-        let mut changed = vec![false; complex.nodes()];
-        for i in marked {
-            changed[i as usize] = true;
-            for &j in &complex.neighbours[i as usize] {
-                changed[j as usize] = true;
-            }
-        }
-        for i in 0..complex.nodes() {
-            if changed[i] {
-                halved[i] = halved[i].saturating_add(1);
-                proposed[i] = if halved[i] > HALVINGS {
-                    current[i]
-                } else {
-                    current[i] + 0.5_f32.powi(i32::from(halved[i])) * (full[i] - current[i])
-                };
-            }
-        }
-        moved = Some(changed);
     }
-    None
+
+    /// Draws nodes back until the step is valid; false if that takes too many rounds.
+    fn hold_back(&self, full: &[Vec3A], proposed: &mut [Vec3A], halved: &mut [u8], rounds: &mut u32) -> bool {
+        for (i, p) in proposed.iter_mut().enumerate() {
+            *p = self.held(i, full, halved[i]);
+        }
+        let mut moved: Option<Vec<bool>> = None;
+        for _ in 0..MOST_ROUNDS {
+            let marked = self.faults(proposed, moved.as_deref());
+            if marked.is_empty() {
+                return true;
+            }
+            *rounds += 1;
+            let mut changed = vec![false; self.complex.nodes()];
+            for i in marked {
+                changed[i as usize] = true;
+                for &j in &self.complex.neighbours[i as usize] {
+                    changed[j as usize] = true;
+                }
+            }
+            for i in (0..changed.len()).filter(|&i| changed[i]) {
+                halved[i] = halved[i].saturating_add(1).min(HALVINGS + 1);
+                proposed[i] = self.held(i, full, halved[i]);
+            }
+            moved = Some(changed);
+        }
+        false
+    }
+
+    /// Nodes of what the step would break, of what has a node in `moved` if given.
+    fn faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
+        let mut marked = Vec::new();
+        for &part in self.watch.parts() {
+            let state: Cow<'_, [Vec3A]> =
+                if part < 1.0 { Cow::Owned(blend(self.current, proposed, part)) } else { Cow::Borrowed(proposed) };
+            marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
+            for (shell, near) in self.shells.iter().zip(self.near) {
+                shell.mark_crossings(near, &state, moved, &mut marked);
+            }
+        }
+        marked
+    }
 }
 
 /// Nodes of elements that the step would break, cell by cell.

@@ -32,7 +32,7 @@ pub use guard::{Guarded, Shell, Watch};
 
 /// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing
 /// (measured: the rotations, not the solve, are what converges slowly).
-const GLOBAL_STEPS: [u32; 2] = [1, 3];
+const GLOBAL_STEPS: [u32; 2] = [1, 2];
 
 /// No node moves further than this part of its radius in one iteration (half a cell where cells keep their size), so that
 /// a wall of one cell is not skipped by one.
@@ -193,8 +193,8 @@ fn remove_rigid_motion(positions: &[Vec3A], step: &mut [Vec3A]) {
     step.par_iter_mut().zip(positions).with_min_len(CHUNK).for_each(|(d, x)| *d -= drift + spin.cross(*x - centre));
 }
 
-/// Guard: takes of the proposed step what stays injective. `holds` is kept from step to step. Returns the new positions' largest motion in cells and what
-/// was held back.
+/// Guard: takes of the proposed step what stays injective. `holds` is kept from step to step. Returns the new
+/// positions' largest motion in cells and what was held back.
 pub fn guard_step(
     complex: &Complex,
     asked: &Asked,

@@ -55,6 +55,10 @@ pub struct Shells(pub Vec<Shell>);
 #[derive(Component, Debug, Default)]
 pub struct BoundaryAtRisk(pub bool);
 
+/// `[nodes]` how often the guard halved each node's last step.
+#[derive(Component, Debug, Default)]
+pub struct Holds(pub Vec<u8>);
+
 /// What the guard held back in the last iteration.
 #[derive(Component, Debug, Default)]
 pub struct HeldBack(pub Guarded);
@@ -93,7 +97,7 @@ fn start(
             Warped(complex.rest.clone()),
             Shells(vec![Shell::skin(complex)]),
             (Sizes::default(), Rotations::default(), Targets::default(), Touching::default(), Proposed::default()),
-            (HeldBack::default(), BoundaryAtRisk::default()),
+            (HeldBack::default(), Holds::default(), BoundaryAtRisk::default()),
         ));
     }
 }
@@ -152,19 +156,30 @@ type Accepted<'a> = (
     &'a mut Warped,
     &'a mut Proposed,
     &'a mut HeldBack,
+    &'a mut Holds,
 );
 
 fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), sizes, at_risk, mut growing, mut shells, mut warped, mut proposed, mut held_back) in
-        &mut domains
+    for (
+        Lattice(complex),
+        sizes,
+        at_risk,
+        mut growing,
+        mut shells,
+        mut warped,
+        mut proposed,
+        mut held_back,
+        mut holds,
+    ) in &mut domains
     {
         if growing.0.done() {
             continue;
         }
         let proposed = std::mem::take(&mut proposed.0);
         let guarded = if at_risk.0 { shells.0.len() } else { 1 };
-        let (motion, guarded) =
-            watch.time("guard", || guard_step(complex, &sizes.0, &mut shells.0[..guarded], &mut warped.0, proposed));
+        let (motion, guarded) = watch.time("guard", || {
+            guard_step(complex, &sizes.0, &mut shells.0[..guarded], &mut warped.0, proposed, &mut holds.0)
+        });
         growing.0.iterated(motion);
         held_back.0 = guarded;
     }

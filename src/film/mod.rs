@@ -33,8 +33,8 @@ pub struct Film {
     keyframes: Vec<Keyframe>,
 }
 
-/// Blends that are checked between two keyframes.
-const BLENDS: [f32; 3] = [0.25, 0.5, 0.75];
+/// Blends that are checked between two chosen keyframes; half-way is checked when a keyframe is made.
+const BLENDS: [f32; 2] = [0.3, 0.7];
 
 /// Intervals of λ are not halved below this: less than a frame of any recording.
 const SHORTEST_STEP: f32 = 5.0e-4;
@@ -122,7 +122,7 @@ impl Film {
 /// A keyframe half-way between two, guarded from the first of them.
 pub fn between(complex: &Complex, shells: &mut [Shell], size: &[f32], a: &Keyframe, b: &Keyframe) -> Keyframe {
     let mut positions = blend(&a.positions, &b.positions, 0.5);
-    guard(complex, shells, size, &a.positions, &mut positions, Watch::Way);
+    guard(complex, shells, size, &a.positions, &mut positions, Watch::Way, &mut Vec::new());
     let certificate = certify(complex, shells, &positions);
     Keyframe { lambda: 0.5 * (a.lambda + b.lambda), positions, certificate }
 }

@@ -51,6 +51,10 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         if growing.0.done() || !growing.0.settled() {
             continue;
         }
+        if !growing.0.is_key() {
+            growing.0.advance();
+            continue;
+        }
         let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
         let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
         let half_way = film.keyframes().last().map(|last| blend(&last.positions, warped, 0.5));
@@ -75,7 +79,9 @@ fn draw_back(
     watch: &mut Stopwatch,
 ) -> Certificate {
     if let Some(last) = film.keyframes().last().filter(|k| k.certificate.certified()) {
-        watch.time("guard", || guard::guard(complex, shells, size, &last.positions, warped, Watch::Way));
+        watch.time("guard", || {
+            guard::guard(complex, shells, size, &last.positions, warped, Watch::Way, &mut Vec::new())
+        });
     }
     watch.time("certificate", || certify(complex, shells, warped))
 }
