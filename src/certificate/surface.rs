@@ -52,7 +52,7 @@ impl Plane {
             let bound = self.error * offset.abs().max_element();
             above |= side > bound;
             below |= side < -bound;
-            if !(side.abs() > bound) {
+            if side.abs() <= bound || side.is_nan() {
                 return false;
             }
         }

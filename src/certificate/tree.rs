@@ -45,7 +45,7 @@ impl Bounds {
     }
 }
 
-/// The tree: a complete binary tree over leaves of [`LEAF`] primitives, in heap order.
+/// The tree: a complete binary tree over leaves of four primitives, in heap order.
 #[derive(Debug, Clone)]
 pub struct Tree {
     /// Primitive indices, leaf by leaf.

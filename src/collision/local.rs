@@ -86,7 +86,7 @@ pub fn with_determinant(f: &Mat3A, volume: f32, shape: &Mat3A) -> Mat3A {
     let dot = |a: &Mat3A, b: &Mat3A| a.x_axis.dot(b.x_axis) + a.y_axis.dot(b.y_axis) + a.z_axis.dot(b.z_axis);
     let mut p = *f;
     let det = f.determinant();
-    if !(det > 0.05 * volume) {
+    if det.is_nan() || det <= 0.05 * volume {
         return *shape;
     }
     // Start on the surface along the ray: right for pure scaling, near for the rest.
@@ -100,7 +100,7 @@ pub fn with_determinant(f: &Mat3A, volume: f32, shape: &Mat3A) -> Mat3A {
         p = *f + c * kappa;
     }
     let det = p.determinant();
-    if !(det > 0.5 * volume && det < 2.0 * volume) {
+    if !(0.5 * volume..2.0 * volume).contains(&det) {
         return *shape;
     }
     p

@@ -113,10 +113,9 @@ impl Multigrid {
         let mut off_diagonal = vec![[0.0_f32; NEIGHBOURS]; complex.nodes()];
         let mut diagonal = vec![0.0_f32; complex.nodes()];
         for i in 0..complex.nodes() {
-            for slot in 0..NEIGHBOURS {
-                let m = complex.multiplicity[i][slot];
+            for (entry, &m) in off_diagonal[i].iter_mut().zip(&complex.multiplicity[i]) {
                 let w = if weights == Weights::Unit { f32::from(m.min(1)) } else { f32::from(m) };
-                off_diagonal[i][slot] = -w;
+                *entry = -w;
                 diagonal[i] += w;
             }
             diagonal[i] += mass.get(i).copied().unwrap_or(0.0);

@@ -36,11 +36,14 @@ pub struct Sampling {
     weights: Vec<[f32; 4]>,
 }
 
+/// A sample, its cell, and the nodes it pulls on with their weights.
+type Placed = (Sample, u32, [u32; 4], [f32; 4]);
+
 impl Sampling {
     /// Samples the boundary for its complex.
     pub fn new(boundary: &Boundary, complex: &Complex) -> Self {
         let index = CellIndex::new(complex);
-        let found: Vec<Vec<(Sample, u32, [u32; 4], [f32; 4])>> = (0..boundary.triangles.len())
+        let found: Vec<Vec<Placed>> = (0..boundary.triangles.len())
             .into_par_iter()
             .with_min_len(256)
             .map(|t| {

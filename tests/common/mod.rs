@@ -1,5 +1,5 @@
 //! What several contracts need.
-#![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(dead_code, clippy::print_stdout, reason = "each test file uses its own part; skipping is said aloud")]
 
 use std::path::{Path, PathBuf};
 
