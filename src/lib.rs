@@ -2,6 +2,7 @@
 
 pub mod boundary;
 pub mod error;
+pub mod gallery;
 pub mod importance;
 
 pub use error::{Error, Result};

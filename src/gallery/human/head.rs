@@ -1,0 +1,56 @@
+//! The head: skull, face, nose, eyes, lips and ears. Millimetres inside, from the point between the eyes above the
+//! ear holes' plane.
+
+use glam::Vec3;
+
+use super::face;
+use crate::gallery::implicit::{Loft, Station, chain, ellipsoid, mirrored, round_cone, union};
+
+/// Height of the eyes above the ground, millimetres: 0.936 of the stature.
+const EYE_HEIGHT: f32 = 1638.0;
+
+/// The head.
+#[derive(Debug)]
+pub struct Head {
+    mask: Loft,
+}
+
+/// A body point (metres) in the head's millimetres.
+pub fn to_head(p: Vec3) -> Vec3 {
+    Vec3::new(p.x * 1000.0, p.y * 1000.0 - EYE_HEIGHT, p.z * 1000.0)
+}
+
+impl Head {
+    /// Head 153 mm wide, 196 long, 225 from chin to crown.
+    pub fn new() -> Self {
+        let s = Station::sym;
+        let mask = [
+            s(-98.0, 27.0, 84.0, 15.0, 2.1),
+            s(-86.0, 39.0, 92.0, 0.0, 2.2),
+            s(-70.0, 47.0, 96.0, -10.0, 2.2),
+            s(-45.0, 55.0, 97.0, -15.0, 2.2),
+            s(-20.0, 61.0, 95.0, -20.0, 2.2),
+            s(0.0, 64.0, 95.0, -20.0, 2.2),
+            s(22.0, 65.0, 98.0, -20.0, 2.2),
+            s(45.0, 64.0, 95.0, -20.0, 2.2),
+        ];
+        Self { mask: Loft::new(&mask, [14.0, 20.0]) }
+    }
+
+    /// Near-distance in metres; `p` in the body's space, either half.
+    pub fn distance(&self, p: Vec3) -> f32 {
+        let p = to_head(p);
+        let q = mirrored(p, 1.5);
+        let v = Vec3::new;
+        let mut f = ellipsoid(q, v(0.0, 28.0, 4.0), v(75.0, 84.0, 95.0));
+        f = union(f, ellipsoid(q, v(0.0, 40.0, 42.0), v(62.0, 56.0, 59.0)), 40.0);
+        f = union(f, self.mask.distance(q), 30.0);
+        let jaw = chain(q, &[(v(51.0, -50.0, 4.0), 13.0), (v(48.0, -74.0, 20.0), 13.0), (v(18.0, -98.0, 74.0), 12.0)], 16.0);
+        f = union(f, jaw, 24.0);
+        f = union(f, ellipsoid(q, v(0.0, -98.0, 84.0), v(20.0, 14.0, 14.0)), 18.0);
+        let cheekbone = round_cone(q, v(47.0, -26.0, 70.0), v(64.0, -14.0, 20.0), 15.0, 9.0);
+        f = union(f, cheekbone, 26.0);
+        f = face::features(p, q, f);
+        0.001 * f
+    }
+}

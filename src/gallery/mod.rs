@@ -1,0 +1,4 @@
+//! Built-in scenes, modelled here.
+
+pub mod human;
+pub mod implicit;
