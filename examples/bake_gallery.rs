@@ -1,32 +1,73 @@
-//! Meshes the gallery's implicit models.
-use homunculus::gallery::human::Human;
-use homunculus::gallery::implicit::{polygonize, remesh, Remesh, Mesh};
+//! Meshes the gallery's implicit models into `assets/gallery/*.glb`: `cargo run --release --example bake_gallery`.
+//!
+//! With arguments it only draws a piece for the modeller's eye: `bake_gallery PIECE CELL_METRES OUT.obj`, where PIECE
+//! is body, head, hand, foot or human (remeshed).
+
+use std::fmt::Write as _;
+use std::path::Path;
+
 use glam::Vec3;
-fn save(mesh: &Mesh, path: &str) {
-    let mut s = String::new();
-    for p in &mesh.positions { s += &format!("v {} {} {}\n", p.x, p.y, p.z); }
-    for t in &mesh.triangles { s += &format!("f {} {} {}\n", t[0]+1, t[1]+1, t[2]+1); }
-    std::fs::write(path, s).unwrap();
+use homunculus::gallery::baked::to_glb;
+use homunculus::gallery::human::Human;
+use homunculus::gallery::implicit::{Mesh, Remesh, cut, polygonize, remesh};
+
+/// Cells of the first net, metres: smaller than half of the thinnest feature that must not be lost (an ear's rim).
+const CELL: f32 = 0.0027;
+/// How far a vertex may travel to the surface in one round, metres: about one cell.
+const REACH: f32 = 0.003;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let human = Human::default();
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [piece, cell, out] = &arguments[..] {
+        let mesh = if piece == "human" { bake_human(&human) } else { bare(&human, piece, cell.parse()?) };
+        return Ok(std::fs::write(out, obj(&mesh))?);
+    }
+    let folder = Path::new("assets/gallery");
+    for (name, mesh) in [("hand", bake_hand(&human)), ("human", bake_human(&human))] {
+        std::fs::write(folder.join(name).with_extension("glb"), to_glb(&mesh))?;
+        eprintln!("{name}: {} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
+    }
+    Ok(())
 }
-fn main() {
-    let a: Vec<String> = std::env::args().collect();
-    let cell: f32 = a[1].parse().unwrap();
-    let h = Human::default();
-    let field = |p: Vec3| h.distance(p);
-    let t = std::time::Instant::now();
-    let (lo, hi) = match a.get(3).map(String::as_str) {
-        Some("head") => (Vec3::new(-0.11, 1.47, -0.12), Vec3::new(0.11, 1.78, 0.16)),
-        Some("hand") => (Vec3::new(0.45, 0.70, -0.1), Vec3::new(0.75, 1.05, 0.14)),
-        Some("foot") => (Vec3::new(0.05, -0.02, -0.12), Vec3::new(0.35, 0.25, 0.26)),
+
+fn bake_human(human: &Human) -> Mesh {
+    let field = |p: Vec3| human.distance(p);
+    let mut net = polygonize(&field, Human::LOW, Human::HIGH, CELL);
+    net.keep_largest();
+    remesh(&net, &field, &|p| human.edge_length(p), Remesh { rounds: 6, reach: REACH })
+}
+
+/// The left hand in its own frame, cut off below the wrist.
+fn bake_hand(human: &Human) -> Mesh {
+    let frame = human.arm.hand.frame;
+    let field = |p: Vec3| cut(human.arm.distance(frame.world(p)), p.y + 0.10, 0.016);
+    let mut net = polygonize(&field, Vec3::new(-0.16, -0.13, -0.08), Vec3::new(0.16, 0.25, 0.12), CELL);
+    net.keep_largest();
+    remesh(&net, &field, &|p| human.edge_length(frame.world(p)).min(0.0035), Remesh { rounds: 6, reach: REACH })
+}
+
+fn bare(human: &Human, piece: &str, cell: f32) -> Mesh {
+    let field = |p: Vec3| human.distance(p);
+    let (low, high) = match piece {
+        "head" => (Vec3::new(-0.11, 1.47, -0.12), Vec3::new(0.11, 1.78, 0.16)),
+        "hand" => (Vec3::new(0.45, 0.70, -0.10), Vec3::new(0.75, 1.05, 0.14)),
+        "foot" => (Vec3::new(0.05, -0.02, -0.12), Vec3::new(0.35, 0.25, 0.26)),
         _ => (Human::LOW, Human::HIGH),
     };
-    let mut m = polygonize(&field, lo, hi, cell);
-    eprintln!("net {} {:?}", m.triangles.len(), t.elapsed());
-    m.keep_largest();
-    m.project(&field, 0..3, 0.8*cell);
-    if a.get(3).map(String::as_str) == Some("full") {
-        m = remesh(&m, &field, &|p| h.edge_length(p), Remesh { rounds: 5, reach: 0.003 });
+    let mut net = polygonize(&field, low, high, cell);
+    net.keep_largest();
+    net.project(&field, 0..3, cell);
+    net
+}
+
+fn obj(mesh: &Mesh) -> String {
+    let mut text = String::new();
+    for p in &mesh.positions {
+        let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
     }
-    eprintln!("{} tris {} verts {:?} vol {}", m.triangles.len(), m.positions.len(), t.elapsed(), m.signed_volume()/6.0);
-    save(&m, &a[2]);
+    for t in &mesh.triangles {
+        let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
+    }
+    text
 }

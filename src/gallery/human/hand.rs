@@ -60,7 +60,8 @@ impl Hand {
 }
 
 impl Finger {
-    fn distance(&self, p: Vec3) -> f32 {
+    /// Near-distance; `p` in the hand's frame.
+    pub fn distance(&self, p: Vec3) -> f32 {
         let k = &self.knots;
         let mut f = chain(p, k, 0.006);
         let (joint, tip, r) = (k[2].0, k[3].0, k[3].1);

@@ -7,13 +7,17 @@ mod face;
 mod hand;
 mod head;
 mod leg;
+mod regions;
 mod torso;
+mod values;
 
 pub use arm::Arm;
 pub use hand::{Finger, Hand};
 pub use head::Head;
 pub use leg::{Leg, Toe};
+pub use regions::{NAMES, memberships};
 pub use torso::Torso;
+pub use values::{Table, read_values, scenes};
 
 use glam::Vec3;
 

@@ -33,10 +33,10 @@ impl Torso {
         let neck = [
             Station::sym(1.400, 0.070, 0.030, -0.092, 2.0),
             Station::sym(1.440, 0.062, 0.032, -0.082, 2.0),
-            Station::sym(1.480, 0.056, 0.038, -0.070, 2.0),
-            Station::sym(1.520, 0.054, 0.046, -0.062, 2.0),
-            Station::sym(1.560, 0.054, 0.050, -0.060, 2.0),
-            Station::sym(1.610, 0.054, 0.050, -0.060, 2.0),
+            Station::sym(1.480, 0.053, 0.036, -0.068, 2.0),
+            Station::sym(1.520, 0.051, 0.042, -0.061, 2.0),
+            Station::sym(1.560, 0.051, 0.045, -0.060, 2.0),
+            Station::sym(1.610, 0.051, 0.045, -0.060, 2.0),
         ];
         Self { trunk: Loft::new(&trunk, [0.05, 0.03]), neck: Loft::new(&neck, [0.03, 0.03]) }
     }
@@ -45,11 +45,11 @@ impl Torso {
     pub fn distance(&self, p: Vec3) -> f32 {
         let q = mirrored(p, 0.004);
         let mut f = self.trunk.distance(q);
-        f = union(f, self.back(q), 0.05);
-        f = union(f, self.front(p, q), 0.045);
+        f = union(f, self.back(q), 0.07);
+        f = union(f, self.front(p, q), 0.06);
         f = union(f, buttocks(p), 0.045);
         f = union(f, self.neck(q), 0.05);
-        f = union(f, shoulder_girdle(q), 0.04);
+        f = union(f, shoulder_girdle(q), 0.045);
         // Furrow of the spine, line of the belly, navel, notch above the breastbone.
         let back = Vec2::new(p.x, 0.0).length();
         f += 0.0065 * bump(back, 0.030) * bump(p.y - 1.17, 0.25) * f32::from(p.z < 0.0);
@@ -62,9 +62,9 @@ impl Torso {
     fn back(&self, q: Vec3) -> f32 {
         let v = Vec3::new;
         let lat = chain(q, &[(v(0.085, 1.10, -0.040), 0.035), (v(0.128, 1.26, -0.055), 0.042), (v(0.165, 1.36, -0.040), 0.034)], 0.03);
-        let scapula = ellipsoid(q, v(0.088, 1.335, -0.098), v(0.058, 0.080, 0.030));
-        let erector = chain(q, &[(v(0.034, 0.98, -0.072), 0.030), (v(0.036, 1.12, -0.052), 0.030), (v(0.034, 1.30, -0.090), 0.025)], 0.02);
-        union(union(lat, scapula, 0.04), erector, 0.03)
+        let scapula = ellipsoid(q, v(0.088, 1.330, -0.080), v(0.062, 0.090, 0.040));
+        let erector = chain(q, &[(v(0.036, 0.98, -0.066), 0.030), (v(0.040, 1.12, -0.046), 0.030), (v(0.036, 1.30, -0.084), 0.025)], 0.02);
+        union(union(lat, scapula, 0.07), erector, 0.06)
     }
 
     fn front(&self, p: Vec3, q: Vec3) -> f32 {
@@ -75,28 +75,28 @@ impl Torso {
             let tail = round_cone(p, v(0.085, 1.318, 0.062), v(0.168, 1.378, 0.020), 0.044, 0.032);
             union(body, tail, 0.05)
         };
-        let ribs = round_cone(q, v(0.045, 1.215, 0.070), v(0.105, 1.130, 0.035), 0.036, 0.034);
-        let belly = ellipsoid(q, v(0.0, 1.020, 0.035), v(0.105, 0.100, 0.076));
-        let hip = ellipsoid(q, v(0.128, 1.005, 0.045), v(0.030, 0.045, 0.036));
-        let mound = ellipsoid(q, v(0.0, 0.862, 0.060), v(0.045, 0.050, 0.036));
-        let chest = union(union(pec(1.0), pec(-1.0), 0.022), ribs, 0.04);
-        union(union(union(chest, belly, 0.05), hip, 0.04), mound, 0.05)
+        let ribs = round_cone(q, v(0.040, 1.200, 0.066), v(0.098, 1.140, 0.036), 0.036, 0.036);
+        let belly = ellipsoid(q, v(0.0, 1.035, 0.035), v(0.105, 0.130, 0.076));
+        let hip = ellipsoid(q, v(0.110, 1.000, 0.040), v(0.045, 0.060, 0.050));
+        let mound = ellipsoid(q, v(0.0, 0.868, 0.045), v(0.050, 0.060, 0.042));
+        let chest = union(union(pec(1.0), pec(-1.0), 0.030), ribs, 0.06);
+        union(union(union(chest, belly, 0.07), hip, 0.06), mound, 0.07)
     }
 
     fn neck(&self, q: Vec3) -> f32 {
         let v = Vec3::new;
         let column = self.neck.distance(q);
-        let strap = chain(q, &[(v(0.052, 1.585, -0.012), 0.014), (v(0.036, 1.500, 0.022), 0.013), (v(0.014, 1.437, 0.038), 0.010)], 0.01);
-        let larynx = ellipsoid(q, v(0.0, 1.498, 0.036), v(0.014, 0.020, 0.014));
-        union(union(column, strap, 0.018), larynx, 0.02)
+        let strap = chain(q, &[(v(0.048, 1.585, -0.014), 0.012), (v(0.034, 1.505, 0.016), 0.012), (v(0.014, 1.437, 0.034), 0.009)], 0.01);
+        let larynx = ellipsoid(q, v(0.0, 1.502, 0.032), v(0.013, 0.020, 0.013));
+        union(union(column, strap, 0.026), larynx, 0.026)
     }
 }
 
 fn shoulder_girdle(q: Vec3) -> f32 {
     let v = Vec3::new;
     let trapezius = chain(q, &[(v(0.020, 1.545, -0.040), 0.026), (v(0.065, 1.462, -0.050), 0.036), (v(0.160, 1.428, -0.034), 0.030)], 0.05);
-    let clavicle = chain(q, &[(v(0.022, 1.418, 0.038), 0.011), (v(0.075, 1.428, 0.042), 0.009), (v(0.125, 1.440, 0.018), 0.009), (v(0.175, 1.443, -0.012), 0.011)], 0.02);
-    union(trapezius, clavicle, 0.022)
+    let clavicle = chain(q, &[(v(0.022, 1.416, 0.034), 0.010), (v(0.075, 1.424, 0.036), 0.009), (v(0.125, 1.434, 0.014), 0.009), (v(0.175, 1.438, -0.014), 0.012)], 0.02);
+    union(trapezius, clavicle, 0.034)
 }
 
 fn buttocks(p: Vec3) -> f32 {
