@@ -12,7 +12,7 @@ use homunculus::gallery::human::Human;
 use homunculus::gallery::implicit::{Mesh, Remesh, cut, polygonize, remesh};
 
 /// Cells of the first net, metres: smaller than half of the thinnest feature that must not be lost (an ear's rim).
-const CELL: f32 = 0.0027;
+const CELL: f32 = 0.0028;
 /// How far a vertex may travel to the surface in one round, metres: about one cell.
 const REACH: f32 = 0.003;
 

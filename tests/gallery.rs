@@ -152,14 +152,13 @@ fn region_faults(model: &Model) -> Vec<String> {
     }
     // Smooth: along an edge no weight jumps by more than 0.75 (the fine edges are 1 to 3 mm, the blends 5 mm or more).
     let weight = |v: u32, k: u16| model.memberships[v as usize].iter().find(|m| m.0 == k).map_or(0.0, |m| m.1);
-    let jumps = model
-        .boundary
-        .triangles
-        .iter()
-        .filter(|t| model.memberships[t[0] as usize].iter().any(|&(k, w)| (w - weight(t[1], k)).abs() > 0.75))
-        .count();
-    if jumps > 0 {
-        faults.push(format!("{jumps} edges across which a weight jumps"));
+    let jump = |t: &[u32; 3]| {
+        model.memberships[t[0] as usize].iter().find(|&&(k, w)| (w - weight(t[1], k)).abs() > 0.75).map(|m| (t[0], m.0))
+    };
+    let jumps: Vec<(u32, u16)> = model.boundary.triangles.iter().filter_map(jump).collect();
+    if let Some(&(v, k)) = jumps.first() {
+        let (at, name) = (model.boundary.positions[v as usize], &model.region_names[k as usize]);
+        faults.push(format!("{} edges across which a weight jumps, the first in `{name}` at {at:.3}", jumps.len()));
     }
     faults
 }

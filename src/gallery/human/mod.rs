@@ -60,7 +60,7 @@ impl Human {
         }
         if q.y < 1.02 && q.x < 0.36 {
             // Thighs and trunk flow into each other, less so in the groin and below the buttock.
-            f = union(f, self.leg.distance(q), 0.06);
+            f = union(f, self.leg.distance(q), 0.05);
         }
         if q.x > 0.08 && q.y > 0.6 {
             f = union(f, self.arm.distance(q), 0.045);
@@ -72,18 +72,18 @@ impl Human {
     pub fn edge_length(&self, p: Vec3) -> f32 {
         let q = Vec3::new(p.x.abs(), p.y, p.z);
         let near = |centre: Vec3, inner: f32, outer: f32, fine: f32| {
-            let t = ((q.distance(centre) - inner) / (outer - inner)).clamp(0.0, 1.0);
-            fine + t * (0.0100 - fine)
+            let t: f32 = ((q.distance(centre) - inner) / (outer - inner)).clamp(0.0, 1.0);
+            fine + t * (0.0104 - fine)
         };
         let hand = self.arm.hand.frame.world(Vec3::new(-0.01, 0.11, 0.0));
         [
-            near(Vec3::new(0.032, 1.638, 0.090), 0.017, 0.32, 0.0014),
-            near(Vec3::new(0.0, 1.580, 0.105), 0.030, 0.34, 0.0017),
-            near(Vec3::new(0.082, 1.620, -0.012), 0.038, 0.32, 0.0019),
+            near(Vec3::new(0.032, 1.638, 0.090), 0.017, 0.32, 0.0016),
+            near(Vec3::new(0.0, 1.580, 0.105), 0.030, 0.34, 0.0019),
+            near(Vec3::new(0.082, 1.620, -0.012), 0.038, 0.32, 0.0021),
             near(hand, 0.115, 0.40, 0.0029),
-            near(Vec3::new(0.165, 0.02, 0.14), 0.080, 0.55, 0.0034),
+            near(Vec3::new(0.165, 0.02, 0.08), 0.120, 0.55, 0.0037),
         ]
         .into_iter()
-        .fold(0.0085, f32::min)
+        .fold(0.0096, f32::min)
     }
 }

@@ -5,8 +5,9 @@
 
 use glam::Vec3;
 
+use super::face::EYE;
 use super::head::to_head;
-use super::{Finger, Human, face};
+use super::{Finger, Human};
 use crate::gallery::implicit::{ellipsoid, ramp, round_cone};
 
 /// All regions of the human, in the order of [`memberships`]' indices.
@@ -35,7 +36,7 @@ pub fn memberships(human: &Human, p: Vec3) -> Vec<(u16, f32)> {
     let q = Vec3::new(p.x.abs(), p.y, p.z);
     trunk(&mut paint, q);
     leg(&mut paint, human, q);
-    head(&mut paint, q);
+    head(&mut paint, human, q);
     arm(&mut paint, human, p, q);
     let mut kept: Vec<(u16, f32)> =
         (0_u16..).zip(paint.0).filter(|&(_, w)| w > 1e-3).collect();
@@ -62,7 +63,7 @@ fn leg(paint: &mut Paint, human: &Human, q: Vec3) {
     paint.over("thigh", below * (front + (fold - front) * behind));
     paint.over("calf", ramp(0.465 - q.y, -0.025, 0.025));
     paint.over("foot", ramp(0.095 - q.y, -0.018, 0.018));
-    paint.over("sole", ramp(0.013 - q.y, -0.005, 0.005));
+    paint.over("sole", ramp(0.015 - q.y, -0.010, 0.010));
     let p = human.leg.foot_frame().local(q);
     for (i, toe) in human.leg.toes().iter().enumerate() {
         let [a, b, c] = toe.knots.map(|k| k.0);
@@ -73,7 +74,8 @@ fn leg(paint: &mut Paint, human: &Human, q: Vec3) {
     }
 }
 
-fn head(paint: &mut Paint, body: Vec3) {
+fn head(paint: &mut Paint, human: &Human, body: Vec3) {
+    let face = &human.head.face;
     let q = to_head(body);
     let v = Vec3::new;
     // From below the chin up behind the ear to the hairline of the nape.
@@ -84,17 +86,17 @@ fn head(paint: &mut Paint, body: Vec3) {
     paint.over("forehead", head * ramp(q.z, 34.0, 58.0) * ramp(q.y, 8.0, 22.0) * ramp(66.0 - q.y, -8.0, 8.0));
     paint.over("chin", ramp(-ellipsoid(q, v(0.0, -98.0, 84.0), v(27.0, 19.0, 26.0)), -6.0, 2.0));
     paint.over("mouth", ramp(-ellipsoid(q, v(0.0, -71.0, 98.0), v(35.0, 19.0, 24.0)), -5.0, 3.0));
-    paint.over("eye", ramp(23.0 - q.distance(face::EYE.0), -1.0, 7.0));
+    paint.over("eye", ramp(23.0 - q.distance(EYE.0), -1.0, 7.0));
     let nose = round_cone(q, v(0.0, 2.0, 96.0), v(0.0, -41.0, 106.0), 10.0, 18.0);
     paint.over("nose", ramp(-nose, -4.0, 1.5) * ramp(q.y, -56.0, -50.0));
-    paint.over("lip", ramp(2.2 - face::lips(q), 0.0, 3.0) * ramp(q.z, 60.0, 75.0));
-    paint.over("ear", ramp(3.0 - face::ear(q), 0.0, 4.0) * ramp(q.x, 66.0, 72.0));
+    paint.over("lip", ramp(2.2 - face.lips(q), 0.0, 3.0) * ramp(q.z, 60.0, 75.0));
+    paint.over("ear", ramp(3.5 - face.ear(q), 0.0, 6.0) * ramp(q.x, 64.0, 74.0));
 }
 
 fn arm(paint: &mut Paint, human: &Human, p: Vec3, q: Vec3) {
     let arm = &human.arm;
     let (limb, trunk) = (arm.distance(q), human.torso.distance(p));
-    let is_arm = ramp(trunk - limb, -0.012, 0.020) * ramp(q.x, 0.10, 0.18) * ramp(q.y, 0.5, 0.6);
+    let is_arm = ramp(trunk - limb, -0.026, 0.036) * ramp(q.x, 0.10, 0.18) * ramp(q.y, 0.5, 0.6);
     if is_arm <= 0.0 {
         return;
     }

@@ -16,9 +16,9 @@ impl Torso {
     /// 0.63 of the height, hips 0.34 at 0.53, chest 0.32 at 0.73, neck 0.36 around.
     pub fn new() -> Self {
         let trunk = [
-            Station::sym(0.850, 0.140, 0.070, -0.085, 2.2),
-            Station::sym(0.890, 0.160, 0.088, -0.100, 2.3),
-            Station::sym(0.930, 0.170, 0.097, -0.108, 2.3),
+            Station::sym(0.840, 0.120, 0.056, -0.075, 2.2),
+            Station::sym(0.890, 0.156, 0.086, -0.098, 2.2),
+            Station::sym(0.935, 0.168, 0.099, -0.108, 2.3),
             Station::sym(0.980, 0.166, 0.102, -0.104, 2.3),
             Station::sym(1.040, 0.150, 0.105, -0.088, 2.3),
             Station::sym(1.100, 0.138, 0.101, -0.077, 2.3),
@@ -49,13 +49,13 @@ impl Torso {
         f = union(f, self.front(p, q), 0.06);
         f = union(f, buttocks(p), 0.045);
         f = union(f, self.neck(q), 0.05);
-        f = union(f, shoulder_girdle(q), 0.045);
+        f = union(f, shoulder_girdle(q), 0.060);
         // Furrow of the spine, line of the belly, navel, notch above the breastbone.
         let back = Vec2::new(p.x, 0.0).length();
         f += 0.0065 * bump(back, 0.030) * bump(p.y - 1.17, 0.25) * f32::from(p.z < 0.0);
         f += 0.0030 * bump(back, 0.020) * bump(p.y - 1.17, 0.15) * f32::from(p.z > 0.0);
         f += 0.0120 * bump(p.distance(Vec3::new(0.0, 1.047, 0.106)), 0.013);
-        f += 0.0100 * bump(p.distance(Vec3::new(0.0, 1.428, 0.050)), 0.028);
+        f += 0.0045 * bump(p.distance(Vec3::new(0.0, 1.432, 0.046)), 0.030);
         f
     }
 
@@ -77,7 +77,7 @@ impl Torso {
         };
         let ribs = round_cone(q, v(0.040, 1.200, 0.066), v(0.098, 1.140, 0.036), 0.036, 0.036);
         let belly = ellipsoid(q, v(0.0, 1.035, 0.035), v(0.105, 0.130, 0.076));
-        let hip = ellipsoid(q, v(0.110, 1.000, 0.040), v(0.045, 0.060, 0.050));
+        let hip = ellipsoid(q, v(0.105, 1.000, 0.036), v(0.045, 0.060, 0.050));
         let mound = ellipsoid(q, v(0.0, 0.868, 0.045), v(0.050, 0.060, 0.042));
         let chest = union(union(pec(1.0), pec(-1.0), 0.030), ribs, 0.06);
         union(union(union(chest, belly, 0.07), hip, 0.06), mound, 0.07)

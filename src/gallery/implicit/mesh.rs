@@ -1,10 +1,13 @@
-//! From a field to triangles: sampled only near the surface, surface nets, then Newton steps onto the surface.
+//! From a field to triangles: sampled only near the surface, marching tetrahedra, then Newton steps onto the surface.
+//!
+//! Tetrahedra and not surface nets, because each cube cut into six gives a closed manifold always; nets pinch two
+//! sheets into one edge where a crease is narrower than a cell (an eyelid's corner, the web between two toes). Their
+//! slivers do not matter: [`remesh`](super::remesh()) follows.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
-use fast_surface_nets::ndshape::RuntimeShape;
-use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
-use glam::Vec3;
+use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 
 use super::gradient;
@@ -47,13 +50,73 @@ pub fn polygonize(field: &(impl Fn(Vec3) -> f32 + Sync), low: Vec3, high: Vec3, 
             }
         }
     });
-    let shape = RuntimeShape::<u32, 3>::new(size.into());
-    let mut net = SurfaceNetsBuffer::default();
-    let last = size - 1;
-    surface_nets(&samples, &shape, [0; 3], last.into(), &mut net);
-    let positions = net.positions.iter().map(|&q| low + Vec3::from(q) * cell).collect();
-    let triangles = net.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-    Mesh { positions, triangles }
+    march(&samples, size, |q| low + q * cell)
+}
+
+/// The six tetrahedra of a cube by corner number (bit 0 = x, 1 = y, 2 = z), all of positive volume, and the same in
+/// each cube, so that neighbours agree on their common face.
+const TETRAHEDRA: [[usize; 4]; 6] =
+    [[0, 1, 3, 7], [0, 1, 7, 5], [0, 2, 7, 3], [0, 2, 6, 7], [0, 4, 5, 7], [0, 4, 7, 6]];
+
+/// Even orders of a tetrahedron's corners with the inner ones first, by the bit mask of inner corners; a mask of three
+/// inner corners takes the order of its complement, turned around.
+const ORDERS: [[usize; 4]; 16] = {
+    let mut orders = [[0, 1, 2, 3]; 16];
+    orders[0b0010] = [1, 0, 3, 2];
+    orders[0b0100] = [2, 0, 1, 3];
+    orders[0b1000] = [3, 0, 2, 1];
+    orders[0b0101] = [0, 2, 3, 1];
+    orders[0b1001] = [0, 3, 1, 2];
+    orders[0b0110] = [1, 2, 0, 3];
+    orders[0b1010] = [1, 3, 2, 0];
+    orders[0b1100] = [2, 3, 0, 1];
+    orders
+};
+
+fn march(samples: &[f32], size: UVec3, place: impl Fn(Vec3) -> Vec3) -> Mesh {
+    let (row, layer) = (size.x as usize, (size.x * size.y) as usize);
+    let mut mesh = Mesh::default();
+    let mut on_edge: HashMap<(usize, usize), u32> = HashMap::new();
+    for z in 0..size.z as usize - 1 {
+        for y in 0..size.y as usize - 1 {
+            for x in 0..row - 1 {
+                let nodes: [usize; 8] =
+                    std::array::from_fn(|k| x + (k & 1) + (y + (k >> 1 & 1)) * row + (z + (k >> 2)) * layer);
+                let inner = nodes.iter().filter(|&&n| samples[n] < 0.0).count();
+                if inner == 0 || inner == 8 {
+                    continue;
+                }
+                let mut vertex = |a: usize, b: usize| {
+                    let (a, b) = (a.min(b), a.max(b));
+                    *on_edge.entry((a, b)).or_insert_with(|| {
+                        let at = |n: usize| Vec3::new((n % row) as f32, (n % layer / row) as f32, (n / layer) as f32);
+                        // Kept off the nodes, where vertices would coincide.
+                        let share = (samples[a] / (samples[a] - samples[b])).clamp(0.05, 0.95);
+                        mesh.positions.push(place(at(a).lerp(at(b), share)));
+                        mesh.positions.len() as u32 - 1
+                    })
+                };
+                for corners in TETRAHEDRA {
+                    let t = corners.map(|k| nodes[k]);
+                    let mask = (0..4).filter(|&k| samples[t[k]] < 0.0).fold(0, |m, k| m | 1 << k);
+                    let flipped = u32::count_ones(mask) == 3;
+                    let [a, b, c, d] = ORDERS[if flipped { 15 - mask } else { mask } as usize].map(|k| t[k]);
+                    match u32::count_ones(mask) {
+                        1 | 3 => {
+                            let [p, q, r] = [vertex(a, b), vertex(a, c), vertex(a, d)];
+                            mesh.triangles.push(if flipped { [p, r, q] } else { [p, q, r] });
+                        }
+                        2 => {
+                            let [p, q, r, s] = [vertex(a, c), vertex(a, d), vertex(b, d), vertex(b, c)];
+                            mesh.triangles.extend([[p, q, r], [p, r, s]]);
+                        }
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+    mesh
 }
 
 impl Mesh {

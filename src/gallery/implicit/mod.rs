@@ -94,6 +94,24 @@ pub fn chain(p: Vec3, knots: &[(Vec3, f32)], melt: f32) -> f32 {
         .unwrap_or(f32::INFINITY)
 }
 
+/// A smooth curve through `(point, radius)` knots as a finer polyline: Catmull-Rom, `pieces` per span.
+pub fn curve(knots: &[(Vec3, f32)], pieces: usize) -> Vec<(Vec3, f32)> {
+    let Some(last) = knots.len().checked_sub(1) else { return Vec::new() };
+    let at = |i: usize| knots[i.min(last)].0.extend(knots[i.min(last)].1);
+    let mut fine = Vec::with_capacity(last * pieces + 1);
+    for span in 0..last {
+        let (before, a, b, after) = (at(span.saturating_sub(1)), at(span), at(span + 1), at(span + 2));
+        for piece in 0..pieces {
+            let t = piece as f32 / pieces as f32;
+            let (from, to) = ((b - before) * 0.5, (after - a) * 0.5);
+            let rest = a + from * t + (3.0 * (b - a) - 2.0 * from - to) * t * t + (2.0 * (a - b) + from + to) * t * t * t;
+            fine.push((rest.truncate(), rest.w));
+        }
+    }
+    fine.push(knots[last]);
+    fine
+}
+
 /// Signed distance to a box with rounded edges, centred at the origin: half-sizes `half` include the `round`ing.
 pub fn round_box(p: Vec3, half: Vec3, round: f32) -> f32 {
     let q = p.abs() - (half - round);
