@@ -63,7 +63,7 @@ impl Finger {
     /// Near-distance; `p` in the hand's frame.
     pub fn distance(&self, p: Vec3) -> f32 {
         let k = &self.knots;
-        let mut f = chain(p, k, 0.012);
+        let mut f = chain(p, k, 0.003);
         let (joint, tip, r) = (k[2].0, k[3].0, k[3].1);
         let along = (tip - joint).normalize();
         let side = along.cross(self.nail);
@@ -97,7 +97,7 @@ fn finger(i: usize) -> Finger {
     let t = THICKNESS[i];
     let mut at = METACARPALS[i][1];
     let mut knots = [(at, 0.0125 * t); 4];
-    let radii = [0.0106 * t, 0.0096 * t, 0.0083 * t];
+    let radii = [0.0111 * t, 0.0100 * t, 0.0086 * t];
     // A relaxed hand: each phalanx leans a little more to the palm than the one before.
     for (k, lean) in [4.0_f32, 12.0, 18.0].into_iter().enumerate() {
         let (s, c) = lean.to_radians().sin_cos();

@@ -27,7 +27,7 @@ impl Head {
     pub fn new() -> Self {
         let s = Station::sym;
         let mask = [
-            s(-106.0, 12.0, 74.0, 30.0, 2.0),
+            s(-106.0, 16.0, 76.0, 28.0, 2.0),
             s(-98.0, 25.0, 85.0, 15.0, 2.1),
             s(-86.0, 36.0, 92.0, 0.0, 2.1),
             s(-70.0, 44.0, 95.5, -10.0, 2.1),
@@ -38,7 +38,7 @@ impl Head {
             s(45.0, 60.0, 88.0, -15.0, 2.1),
             s(65.0, 50.0, 74.0, -5.0, 2.0),
         ];
-        Self { mask: Loft::new(&mask, [5.0, 30.0]), face: Face::new() }
+        Self { mask: Loft::new(&mask, [9.0, 30.0]), face: Face::new() }
     }
 
     /// Near-distance in metres; `p` in the body's space, either half.

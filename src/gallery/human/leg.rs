@@ -93,7 +93,7 @@ impl Leg {
         f = union(union(f, heel, 0.03), tendon, 0.03);
         f = union(f, ankles, 0.02);
         for toe in &self.toes {
-            f = union(f, chain(p, &toe.knots, 0.008), 0.010);
+            f = union(f, chain(p, &toe.knots, 0.004), 0.010);
         }
         // The ground flattens the sole.
         common(f, -p.y, 0.012)

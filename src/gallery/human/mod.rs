@@ -56,7 +56,7 @@ impl Human {
             f = f.min(self.torso.distance(p));
         }
         if q.y > 1.44 && q.x < 0.18 {
-            f = union(f, self.head.distance(p), 0.022);
+            f = union(f, self.head.distance(p), 0.030);
         }
         if q.y < 1.02 && q.x < 0.36 {
             // Thighs and trunk flow into each other, less so in the groin and below the buttock.
