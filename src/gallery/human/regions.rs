@@ -69,7 +69,7 @@ fn leg(paint: &mut Paint, human: &Human, q: Vec3) {
         let [a, b, c] = toe.knots.map(|k| k.0);
         let near = round_cone(p, a, b, toe.knots[0].1, toe.knots[1].1).min(round_cone(p, b, c, toe.knots[1].1, toe.knots[2].1));
         let along = (p - a).dot((c - a).normalize());
-        let opacity = ramp(0.007 - near, 0.0, 0.005) * ramp(along, 0.010, 0.026);
+        let opacity = ramp(0.009 - near, 0.0, 0.008) * ramp(along, 0.008, 0.028);
         paint.over(if i == 0 { "great_toe" } else { "toes" }, opacity);
     }
 }
