@@ -96,7 +96,8 @@ fn self_intersections(boundary: &Boundary) -> Option<usize> {
     let mut text: String = boundary.positions.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
     text.extend(boundary.triangles.iter().map(|t| format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1)));
     std::fs::write(&path, text).ok()?;
-    let script = "import sys, meshlib.mrmeshpy as m\nprint(m.findSelfCollidingTrianglesBS(m.loadMesh(sys.argv[1])).count())";
+    let script =
+        "import sys, meshlib.mrmeshpy as m\nprint(m.findSelfCollidingTrianglesBS(m.loadMesh(sys.argv[1])).count())";
     let output = Command::new("python3").args(["-c", script]).arg(&path).output().ok()?;
     String::from_utf8(output.stdout).ok()?.trim().parse().ok()
 }
@@ -191,7 +192,9 @@ fn touching_fingertips(model: &Model, cells: f64) -> Vec<(String, String)> {
     let cell = height / cells;
     let labels = &model.boundary.regions.as_ref().expect("a model has regions").of_vertex;
     let names = &model.region_names;
-    let tips: Vec<u32> = (0..names.len() as u32).filter(|&k| names[k as usize].ends_with("tip") || names[k as usize].ends_with("_tip")).collect();
+    let tips: Vec<u32> = (0..names.len() as u32)
+        .filter(|&k| names[k as usize].ends_with("tip") || names[k as usize].ends_with("_tip"))
+        .collect();
     let cells_of = |tip: u32| -> BTreeSet<[i64; 3]> {
         let mut set = BTreeSet::new();
         for t in &model.boundary.triangles {
@@ -238,7 +241,8 @@ fn values_are_checked_with_one_clear_sentence() {
     let model = human();
     let good = scenes()[0].values().expect("a shipped table reads");
     assert!(with_values(&model, &good).is_ok());
-    let message = |values: &[(String, f64)]| with_values(&model, values).expect_err("bad values are refused").to_string();
+    let message =
+        |values: &[(String, f64)]| with_values(&model, values).expect_err("bad values are refused").to_string();
     let mut unknown = good.clone();
     unknown.push(("tail".into(), 1.0));
     assert!(message(&unknown).contains("no region `tail`"));
@@ -264,7 +268,8 @@ fn tables_hold_what_their_formulas_say() {
     };
     let two_point = |t: f64| 3.0 * (2.5 / t).powf(5.0_f64.ln() / 18.0_f64.ln());
     let density = |d: f64| 3.0 * (d / 241.0).powf(5.0_f64.ln() / (241.0_f64 / 9.0).ln());
-    let off = |rows: &[(f64, f64)], f: &dyn Fn(f64) -> f64| rows.iter().filter(|(i, s)| (i - f(*s)).abs() > 6e-4).count();
+    let off =
+        |rows: &[(f64, f64)], f: &dyn Fn(f64) -> f64| rows.iter().filter(|(i, s)| (i - f(*s)).abs() > 6e-4).count();
     let tables: Vec<_> = scenes().iter().map(|s| column(s.text())).collect();
     assert_eq!(off(&tables[0], &two_point), 0);
     assert_eq!(off(&tables[1], &density), 0);

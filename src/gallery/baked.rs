@@ -50,7 +50,8 @@ pub fn from_glb(name: &str, bytes: &[u8]) -> Result<Mesh> {
     let blob = file.blob.as_deref().ok_or_else(|| fault("has no data"))?;
     let primitive = file.meshes().next().and_then(|m| m.primitives().next()).ok_or_else(|| fault("has no mesh"))?;
     let reader = primitive.reader(|_| Some(blob));
-    let positions: Vec<Vec3> = reader.read_positions().ok_or_else(|| fault("has no positions"))?.map(Vec3::from).collect();
+    let positions: Vec<Vec3> =
+        reader.read_positions().ok_or_else(|| fault("has no positions"))?.map(Vec3::from).collect();
     let indices: Vec<u32> = reader.read_indices().ok_or_else(|| fault("has no triangles"))?.into_u32().collect();
     if indices.iter().any(|&i| i as usize >= positions.len()) {
         return Err(fault("names vertices that are not there"));

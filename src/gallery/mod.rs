@@ -55,7 +55,8 @@ pub struct GalleryScene {
 pub fn list() -> &'static [Entry] {
     static LIST: OnceLock<Vec<Entry>> = OnceLock::new();
     LIST.get_or_init(|| {
-        let homunculi = human::scenes().iter().map(|s| Entry { name: s.scene, one_line: s.one_line, reference: s.reference });
+        let homunculi =
+            human::scenes().iter().map(|s| Entry { name: s.scene, one_line: s.one_line, reference: s.reference });
         let hand = Entry {
             name: "hand",
             one_line: "a spread hand whose fingertips ask for three times their size: a quick demonstration",
@@ -155,8 +156,10 @@ fn label(name: &str, mesh: &Mesh, memberships: impl Fn(Vec3) -> Vec<(u16, f32)> 
     let positions = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
     let mut boundary = Boundary::from_triangles(name, positions, mesh.triangles.clone());
     let region_names: Vec<String> = human::NAMES.iter().map(|&n| n.into()).collect();
-    let largest = |m: &Vec<(u16, f32)>| m.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(u32::MAX, |k| u32::from(k.0));
-    boundary.regions = Some(Regions { names: region_names.clone(), of_vertex: memberships.iter().map(largest).collect() });
+    let largest =
+        |m: &Vec<(u16, f32)>| m.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(u32::MAX, |k| u32::from(k.0));
+    boundary.regions =
+        Some(Regions { names: region_names.clone(), of_vertex: memberships.iter().map(largest).collect() });
     Model { boundary, memberships, region_names }
 }
 

@@ -27,7 +27,7 @@ pub const WRIST: Vec3 = Vec3::new(0.518, 0.982, 0.004);
 
 impl Arm {
     /// Upper arm 0.30 around, forearm 0.27, wrist 0.17.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let s = Station::between;
         let upper = [
             s(0.000, -0.046, 0.044, 0.044, -0.046, 2.0),
@@ -69,7 +69,11 @@ impl Arm {
         let v = Vec3::new;
         let u = self.upper.local(q);
         let mut upper = self.upper_loft.distance(u);
-        let deltoid = chain(u, &[(v(0.004, -0.004, 0.0), 0.054), (v(-0.012, 0.055, 0.0), 0.048), (v(-0.018, 0.125, 0.0), 0.026)], 0.03);
+        let deltoid = chain(
+            u,
+            &[(v(0.004, -0.004, 0.0), 0.054), (v(-0.012, 0.055, 0.0), 0.048), (v(-0.018, 0.125, 0.0), 0.026)],
+            0.03,
+        );
         let biceps = ellipsoid(u, v(0.004, 0.175, 0.020), v(0.029, 0.080, 0.030));
         let triceps = ellipsoid(u, v(0.008, 0.135, -0.022), v(0.032, 0.090, 0.032));
         upper = union(upper, deltoid, 0.025);

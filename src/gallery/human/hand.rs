@@ -68,7 +68,11 @@ impl Finger {
         let along = (tip - joint).normalize();
         let side = along.cross(self.nail);
         // Pad on the palm's side, nail on the other.
-        f = union(f, round_cone(p, tip - along * 0.008 - self.nail * 0.0016, tip - self.nail * 0.0012, r * 0.95, r * 0.92), 0.006);
+        f = union(
+            f,
+            round_cone(p, tip - along * 0.008 - self.nail * 0.0016, tip - self.nail * 0.0012, r * 0.95, r * 0.92),
+            0.006,
+        );
         let d = p - (tip - along * 0.001 + self.nail * (r * 0.80));
         let nail = Vec3::new(d.dot(side), d.dot(along), d.dot(self.nail));
         let plate = ellipsoid(nail, Vec3::ZERO, Vec3::new(r * 0.72, r * 0.95, r * 0.26));
@@ -82,9 +86,17 @@ fn palm(p: Vec3) -> f32 {
     for [base, head] in METACARPALS {
         f = union(f, round_cone(p, base, head, 0.0175, 0.0142), 0.016);
     }
-    let thenar = chain(p, &[(v(-0.018, 0.020, 0.006), 0.018), (v(-0.036, 0.048, 0.011), 0.0185), (v(-0.050, 0.066, 0.013), 0.014)], 0.012);
+    let thenar = chain(
+        p,
+        &[(v(-0.018, 0.020, 0.006), 0.018), (v(-0.036, 0.048, 0.011), 0.0185), (v(-0.050, 0.066, 0.013), 0.014)],
+        0.012,
+    );
     let web = round_cone(p, v(-0.030, 0.070, 0.004), v(-0.044, 0.066, 0.008), 0.012, 0.010);
-    let hypothenar = chain(p, &[(v(0.020, 0.022, 0.006), 0.016), (v(0.030, 0.050, 0.007), 0.0165), (v(0.034, 0.080, 0.004), 0.013)], 0.012);
+    let hypothenar = chain(
+        p,
+        &[(v(0.020, 0.022, 0.006), 0.016), (v(0.030, 0.050, 0.007), 0.0165), (v(0.034, 0.080, 0.004), 0.013)],
+        0.012,
+    );
     let pads = round_cone(p, v(-0.030, 0.098, 0.006), v(0.030, 0.092, 0.006), 0.0105, 0.0100);
     f = union(f, union(thenar, web, 0.02), 0.016);
     f = union(f, hypothenar, 0.016);

@@ -24,7 +24,7 @@ pub fn to_head(p: Vec3) -> Vec3 {
 
 impl Head {
     /// Head 153 mm wide, 196 long, 225 from chin to crown.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let s = Station::sym;
         let mask = [
             s(-106.0, 16.0, 76.0, 28.0, 2.0),
@@ -49,7 +49,8 @@ impl Head {
         let mut f = ellipsoid(q, v(0.0, 28.0, 4.0), v(75.0, 84.0, 95.0));
         f = union(f, ellipsoid(q, v(0.0, 40.0, 42.0), v(62.0, 56.0, 59.0)), 40.0);
         f = union(f, self.mask.distance(q), 30.0);
-        let jaw = chain(q, &[(v(48.0, -44.0, 6.0), 12.0), (v(42.5, -69.0, 20.0), 12.0), (v(15.0, -97.0, 74.0), 12.0)], 16.0);
+        let jaw =
+            chain(q, &[(v(48.0, -44.0, 6.0), 12.0), (v(42.5, -69.0, 20.0), 12.0), (v(15.0, -97.0, 74.0), 12.0)], 16.0);
         f = union(f, jaw, 30.0);
         f = union(f, ellipsoid(q, v(35.0, -50.0, 62.0), v(20.0, 25.0, 22.0)), 34.0);
         f = union(f, ellipsoid(q, v(0.0, -97.0, 84.0), v(17.0, 14.0, 14.0)), 22.0);

@@ -12,10 +12,41 @@ use crate::gallery::implicit::{ellipsoid, ramp, round_cone};
 
 /// All regions of the human, in the order of [`memberships`]' indices.
 pub const NAMES: [&str; 35] = [
-    "scalp", "forehead", "eye", "ear", "nose", "cheek", "lip", "mouth", "chin", "neck", "shoulder", "upper_arm",
-    "forearm", "back_of_hand", "palm", "thumb", "thumb_tip", "index_finger", "index_fingertip", "middle_finger",
-    "middle_fingertip", "ring_finger", "ring_fingertip", "little_finger", "little_fingertip", "chest", "belly", "back",
-    "buttock", "thigh", "calf", "foot", "sole", "great_toe", "toes",
+    "scalp",
+    "forehead",
+    "eye",
+    "ear",
+    "nose",
+    "cheek",
+    "lip",
+    "mouth",
+    "chin",
+    "neck",
+    "shoulder",
+    "upper_arm",
+    "forearm",
+    "back_of_hand",
+    "palm",
+    "thumb",
+    "thumb_tip",
+    "index_finger",
+    "index_fingertip",
+    "middle_finger",
+    "middle_fingertip",
+    "ring_finger",
+    "ring_fingertip",
+    "little_finger",
+    "little_fingertip",
+    "chest",
+    "belly",
+    "back",
+    "buttock",
+    "thigh",
+    "calf",
+    "foot",
+    "sole",
+    "great_toe",
+    "toes",
 ];
 
 /// A stack of paint.
@@ -38,8 +69,7 @@ pub fn memberships(human: &Human, p: Vec3) -> Vec<(u16, f32)> {
     leg(&mut paint, human, q);
     head(&mut paint, human, q);
     arm(&mut paint, human, p, q);
-    let mut kept: Vec<(u16, f32)> =
-        (0_u16..).zip(paint.0).filter(|&(_, w)| w > 1e-3).collect();
+    let mut kept: Vec<(u16, f32)> = (0_u16..).zip(paint.0).filter(|&(_, w)| w > 1e-3).collect();
     let total: f32 = kept.iter().map(|k| k.1).sum();
     kept.iter_mut().for_each(|k| k.1 /= total);
     kept
@@ -67,7 +97,13 @@ fn leg(paint: &mut Paint, human: &Human, q: Vec3) {
     let p = human.leg.foot_frame().local(q);
     for (i, toe) in human.leg.toes().iter().enumerate() {
         let [a, b, c] = toe.knots.map(|k| k.0);
-        let near = round_cone(p, a, b, toe.knots[0].1, toe.knots[1].1).min(round_cone(p, b, c, toe.knots[1].1, toe.knots[2].1));
+        let near = round_cone(p, a, b, toe.knots[0].1, toe.knots[1].1).min(round_cone(
+            p,
+            b,
+            c,
+            toe.knots[1].1,
+            toe.knots[2].1,
+        ));
         let along = (p - a).dot((c - a).normalize());
         let opacity = ramp(0.009 - near, 0.0, 0.008) * ramp(along, 0.008, 0.028);
         paint.over(if i == 0 { "great_toe" } else { "toes" }, opacity);

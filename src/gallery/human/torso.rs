@@ -14,7 +14,7 @@ pub struct Torso {
 impl Torso {
     /// Half-breadths and depths after the usual proportions of a 1.75 m adult between the sexes: waist 0.28 wide at
     /// 0.63 of the height, hips 0.34 at 0.53, chest 0.32 at 0.73, neck 0.36 around.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let trunk = [
             Station::sym(0.840, 0.120, 0.056, -0.075, 2.2),
             Station::sym(0.890, 0.156, 0.086, -0.098, 2.2),
@@ -61,9 +61,17 @@ impl Torso {
 
     fn back(&self, q: Vec3) -> f32 {
         let v = Vec3::new;
-        let lat = chain(q, &[(v(0.085, 1.10, -0.040), 0.035), (v(0.128, 1.26, -0.055), 0.042), (v(0.165, 1.36, -0.040), 0.034)], 0.03);
+        let lat = chain(
+            q,
+            &[(v(0.085, 1.10, -0.040), 0.035), (v(0.128, 1.26, -0.055), 0.042), (v(0.165, 1.36, -0.040), 0.034)],
+            0.03,
+        );
         let scapula = ellipsoid(q, v(0.088, 1.330, -0.080), v(0.062, 0.090, 0.040));
-        let erector = chain(q, &[(v(0.036, 0.98, -0.066), 0.030), (v(0.040, 1.12, -0.046), 0.030), (v(0.036, 1.30, -0.084), 0.025)], 0.02);
+        let erector = chain(
+            q,
+            &[(v(0.036, 0.98, -0.066), 0.030), (v(0.040, 1.12, -0.046), 0.030), (v(0.036, 1.30, -0.084), 0.025)],
+            0.02,
+        );
         union(union(lat, scapula, 0.07), erector, 0.06)
     }
 
@@ -86,7 +94,11 @@ impl Torso {
     fn neck(&self, q: Vec3) -> f32 {
         let v = Vec3::new;
         let column = self.neck.distance(q);
-        let strap = chain(q, &[(v(0.048, 1.585, -0.014), 0.012), (v(0.034, 1.505, 0.016), 0.012), (v(0.014, 1.437, 0.034), 0.009)], 0.01);
+        let strap = chain(
+            q,
+            &[(v(0.048, 1.585, -0.014), 0.012), (v(0.034, 1.505, 0.016), 0.012), (v(0.014, 1.437, 0.034), 0.009)],
+            0.01,
+        );
         let larynx = ellipsoid(q, v(0.0, 1.502, 0.032), v(0.013, 0.020, 0.013));
         union(union(column, strap, 0.026), larynx, 0.026)
     }
@@ -94,8 +106,21 @@ impl Torso {
 
 fn shoulder_girdle(q: Vec3) -> f32 {
     let v = Vec3::new;
-    let trapezius = chain(q, &[(v(0.020, 1.545, -0.040), 0.026), (v(0.065, 1.462, -0.050), 0.036), (v(0.160, 1.428, -0.034), 0.030)], 0.05);
-    let clavicle = chain(q, &[(v(0.022, 1.416, 0.034), 0.010), (v(0.075, 1.424, 0.036), 0.009), (v(0.125, 1.434, 0.014), 0.009), (v(0.175, 1.438, -0.014), 0.012)], 0.02);
+    let trapezius = chain(
+        q,
+        &[(v(0.020, 1.545, -0.040), 0.026), (v(0.065, 1.462, -0.050), 0.036), (v(0.160, 1.428, -0.034), 0.030)],
+        0.05,
+    );
+    let clavicle = chain(
+        q,
+        &[
+            (v(0.022, 1.416, 0.034), 0.010),
+            (v(0.075, 1.424, 0.036), 0.009),
+            (v(0.125, 1.434, 0.014), 0.009),
+            (v(0.175, 1.438, -0.014), 0.012),
+        ],
+        0.02,
+    );
     union(trapezius, clavicle, 0.034)
 }
 

@@ -104,7 +104,8 @@ pub fn curve(knots: &[(Vec3, f32)], pieces: usize) -> Vec<(Vec3, f32)> {
         for piece in 0..pieces {
             let t = piece as f32 / pieces as f32;
             let (from, to) = ((b - before) * 0.5, (after - a) * 0.5);
-            let rest = a + from * t + (3.0 * (b - a) - 2.0 * from - to) * t * t + (2.0 * (a - b) + from + to) * t * t * t;
+            let rest =
+                a + from * t + (3.0 * (b - a) - 2.0 * from - to) * t * t + (2.0 * (a - b) + from + to) * t * t * t;
             fine.push((rest.truncate(), rest.w));
         }
     }
@@ -153,12 +154,8 @@ pub fn ramp(value: f32, from: f32, to: f32) -> f32 {
 
 /// The gradient of a field at `p` by central differences over a tetrahedron; `step` in metres.
 pub fn gradient(field: &impl Fn(Vec3) -> f32, p: Vec3, step: f32) -> Vec3 {
-    const CORNERS: [Vec3; 4] = [
-        Vec3::new(1.0, -1.0, -1.0),
-        Vec3::new(-1.0, -1.0, 1.0),
-        Vec3::new(-1.0, 1.0, -1.0),
-        Vec3::new(1.0, 1.0, 1.0),
-    ];
+    const CORNERS: [Vec3; 4] =
+        [Vec3::new(1.0, -1.0, -1.0), Vec3::new(-1.0, -1.0, 1.0), Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, 1.0, 1.0)];
     CORNERS.iter().map(|&c| c * field(p + c * step)).sum::<Vec3>() / (4.0 * step)
 }
 

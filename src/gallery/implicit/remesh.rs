@@ -213,7 +213,8 @@ impl Work {
             return false;
         }
         let (one, two) = ([c, d, b], [d, c, a]);
-        let (before, before2) = (self.normal([a, b, c]).normalize_or_zero(), self.normal([b, a, d]).normalize_or_zero());
+        let (before, before2) =
+            (self.normal([a, b, c]).normalize_or_zero(), self.normal([b, a, d]).normalize_or_zero());
         let (after, after2) = (self.normal(one).normalize_or_zero(), self.normal(two).normalize_or_zero());
         if [before, before2].iter().any(|n| n.dot(after) < 0.7 || n.dot(after2) < 0.7) {
             return false;
