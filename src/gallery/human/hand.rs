@@ -29,8 +29,8 @@ const METACARPALS: [[Vec3; 2]; 4] = [
     [Vec3::new(0.006, 0.016, -0.003), Vec3::new(0.014, 0.107, -0.003)],
     [Vec3::new(0.016, 0.018, -0.001), Vec3::new(0.037, 0.097, 0.001)],
 ];
-/// Fan of each finger from the hand's axis towards the little finger, degrees. 22 degrees from one to the next keep
-/// 27 mm between the outer halves of neighbours, one and a half cells at 96 cells along the body.
+/// Fan of each finger from the hand's axis towards the little finger, degrees. 22 degrees from one to the next leave
+/// 23 mm (measured) between neighbours at their middle, more towards the tips, which stay apart at 96 cells (18 mm).
 const FAN: [f32; 4] = [-30.0, -8.0, 15.0, 39.0];
 /// Lengths of the three phalanges, metres; the last one to the centre of the tip's ball.
 const PHALANGES: [[f32; 3]; 4] =
