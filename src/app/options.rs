@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
+use crate::gallery;
 use crate::importance::{Layer, Range};
 use crate::scene::{Draft, MAX_KEYS, MAX_RESOLUTION, MIN_RESOLUTION, Scene, Source};
 use crate::schedule::Reference;
@@ -208,7 +209,7 @@ impl WarpOrder {
         let options = &self.options;
         let mut draft = match (&options.scene, &options.source) {
             (Some(path), _) => Scene::load(path)?.into_draft(),
-            (None, Some(source)) => Draft::of(source.clone()),
+            (None, Some(source)) => fresh(source),
             (None, None) => return Err(Error::input("nothing to warp; give a mesh file, gallery:NAME or --scene")),
         };
         if let Some(source) = &options.source {
@@ -222,6 +223,18 @@ impl WarpOrder {
         draft.keys = options.keys.unwrap_or(draft.keys);
         Scene::new(draft)
     }
+}
+
+/// A scene with nothing but a source; a built-in one comes with settings that suit it.
+fn fresh(source: &Source) -> Draft {
+    let mut draft = Draft::of(source.clone());
+    if let Source::Gallery(name) = source
+        && let Some(entry) = gallery::list().iter().find(|entry| entry.name == name)
+    {
+        draft.resolution = entry.resolution;
+        draft.fidelity = entry.fidelity;
+    }
+    draft
 }
 
 /// Importance in the order given. Each `--regions` takes the next `--values` after it.

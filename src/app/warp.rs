@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use super::options::{Colour, WarpOrder};
 use super::outputs::Outputs;
 use super::{Verdict, cancel, note, progress, say};
-use crate::boundary::{self, Boundary};
+use crate::boundary::{self, Attribute, Boundary};
 use crate::export::report::{self, Report};
 use crate::export::{self, GrowthFrame};
+use crate::gallery::human::read_values;
 use crate::importance::{self, Layer, Stack};
 use crate::scene::{Scene, Source};
 use crate::schedule::{self, Outcome, Settings};
@@ -25,7 +26,7 @@ pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     cancel::listen();
 
     let mut boundary = open(&scene.source)?;
-    let layers = layers(&scene, &boundary);
+    let layers = layers(&scene, &mut boundary)?;
     let stack = Stack::load(&layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
     if let Some(regions) = stack.regions() {
         boundary.regions = Some(regions.clone());
@@ -57,22 +58,52 @@ pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     Ok(if report.certified() { Verdict::Done } else { Verdict::NotCertified })
 }
 
-/// The boundary a source names.
+/// The boundary a source names. A built-in scene brings its importance as the vertex attribute [`OWN`].
 pub(super) fn open(source: &Source) -> Result<Boundary> {
     match source {
         Source::File(path) => boundary::read(path),
-        Source::Gallery(name) => gallery::open(name),
+        Source::Gallery(name) => {
+            let scene = gallery::open(name)?;
+            Ok(with_own(scene.model.boundary, scene.importance))
+        }
     }
 }
 
-/// The scene's layers. A built-in model brings its own importance, an attribute of that name, for when none is ordered.
-fn layers(scene: &Scene, boundary: &Boundary) -> Vec<Layer> {
-    let own = Layer::Attribute { name: "importance".into(), range: None };
-    let is_gallery = matches!(scene.source, Source::Gallery(_));
-    if is_gallery && scene.layers.is_empty() && boundary.attributes.iter().any(|a| a.name == "importance") {
-        return vec![own];
+/// The attribute that holds a built-in scene's own importance.
+const OWN: &str = "importance";
+
+fn with_own(mut boundary: Boundary, importance: Vec<f32>) -> Boundary {
+    boundary.attributes.retain(|a| a.name != OWN);
+    boundary.attributes.push(Attribute { name: OWN.into(), values: importance });
+    boundary
+}
+
+/// The scene's layers. A built-in scene's own importance lies below them, unless a table of its regions
+/// (`region,importance`) replaces it.
+fn layers(scene: &Scene, boundary: &mut Boundary) -> Result<Vec<Layer>> {
+    let Source::Gallery(name) = &scene.source else { return Ok(scene.layers.clone()) };
+    let mut layers = vec![Layer::Attribute { name: OWN.into(), range: None }];
+    for layer in &scene.layers {
+        match layer {
+            Layer::Values { path } if is_table_of_regions(path)? => {
+                let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
+                let values = read_values(&path.display().to_string(), &text)?;
+                let model = gallery::open(name)?.model;
+                let importance = gallery::with_values(&model, &values).map_err(|error| Error::in_file(path, error))?;
+                *boundary = with_own(std::mem::take(boundary), importance);
+            }
+            layer => layers.push(layer.clone()),
+        }
     }
-    scene.layers.clone()
+    Ok(layers)
+}
+
+/// Whether the first line that is no comment names a column `region`.
+fn is_table_of_regions(path: &Path) -> Result<bool> {
+    let text = std::fs::read(path).map_err(|e| Error::reading(path, e))?;
+    let text = String::from_utf8_lossy(&text);
+    let header = text.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
+    Ok(header.split(',').any(|column| column.trim().trim_start_matches('\u{feff}') == "region"))
 }
 
 fn warnings(scene: &Scene, boundary: &Boundary, stack: &Stack) -> Vec<String> {

@@ -36,6 +36,10 @@ pub struct Entry {
     pub one_line: &'static str,
     /// Where its numbers or its idea come from.
     pub reference: &'static str,
+    /// Suggested number of cells along the longest side: fingers must not share cells.
+    pub resolution: u32,
+    /// Suggested μ in 0..=1.
+    pub fidelity: f32,
 }
 
 /// A scene ready to be warped.
@@ -45,22 +49,25 @@ pub struct GalleryScene {
     pub model: Model,
     /// `[vertices]` importance: the linear size factor asked for, > 0.
     pub importance: Vec<f32>,
-    /// Suggested number of cells along the longest side.
-    pub resolution: u32,
-    /// Suggested fidelity, 0..=1: how much of the importance to ask for.
-    pub fidelity: f32,
 }
 
 /// Everything the gallery has.
 pub fn list() -> &'static [Entry] {
     static LIST: OnceLock<Vec<Entry>> = OnceLock::new();
     LIST.get_or_init(|| {
-        let homunculi =
-            human::scenes().iter().map(|s| Entry { name: s.scene, one_line: s.one_line, reference: s.reference });
+        let homunculi = human::scenes().iter().map(|s| Entry {
+            name: s.scene,
+            one_line: s.one_line,
+            reference: s.reference,
+            resolution: 96,
+            fidelity: 0.8,
+        });
         let hand = Entry {
             name: "hand",
             one_line: "a spread hand whose fingertips ask for three times their size: a quick demonstration",
             reference: "modelled here",
+            resolution: 64,
+            fidelity: 0.8,
         };
         homunculi.chain([hand]).collect()
     })
@@ -75,7 +82,7 @@ pub fn open(name: &str) -> Result<GalleryScene> {
         let model = hand_model()?.clone();
         let values = hand_values(&model);
         let importance = with_values(&model, &values)?;
-        return Ok(GalleryScene { model, importance, resolution: 64, fidelity: 1.0 });
+        return Ok(GalleryScene { model, importance });
     }
     let Some(table) = human::scenes().iter().find(|s| s.scene == name) else {
         let names: Vec<&str> = list().iter().map(|e| e.name).collect();
@@ -84,7 +91,7 @@ pub fn open(name: &str) -> Result<GalleryScene> {
     let mut model = human_model()?.clone();
     model.boundary.name = name.into();
     let importance = with_values(&model, &table.values()?)?;
-    Ok(GalleryScene { model, importance, resolution: 96, fidelity: 1.0 })
+    Ok(GalleryScene { model, importance })
 }
 
 /// `[vertices]` importance of a model from `(region, importance)` rows: exp(Σ weight · ln importance), so that the
