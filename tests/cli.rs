@@ -286,7 +286,7 @@ fn bad_input_ends_with_2_in_one_sentence_and_writes_nothing() {
         ("warp folder.obj", "folder.obj"),
         ("warp gallery:nothing", "nothing"),
         ("warp bar.obj --resolution 0", "resolution 0 is not within 8 to 256"),
-        ("warp bar.obj --resolution 100000", "PB of memory"),
+        ("warp bar.obj --resolution 100000", "EB of memory"),
         ("warp bar.obj --fidelity 2", "fidelity 2"),
         ("warp bar.obj --fidelity -1", "fidelity -1"),
         ("warp bar.obj --keys 65", "keys 65"),
@@ -309,7 +309,7 @@ fn bad_input_ends_with_2_in_one_sentence_and_writes_nothing() {
         ("warp --scene bad.ron", "bad.ron: line 3"),
         ("warp --scene absent.ron", "absent.ron: cannot read"),
         ("inspect absent.obj", "absent.obj: cannot read"),
-        ("inspect bar.obj --resolution 100000", "PB of memory"),
+        ("inspect bar.obj --resolution 100000", "EB of memory"),
         ("dance", "dance"),
     ];
     for (arguments, expected) in cases {

@@ -456,14 +456,6 @@ fn a_growth_needs_frames_and_time() {
 }
 
 #[test]
-fn growth_steps_keep_both_ends() {
-    assert_eq!(export::growth_steps(9, 8), (0..9).collect::<Vec<_>>());
-    assert_eq!(export::growth_steps(3, 8), [0, 1, 2]);
-    assert_eq!(export::growth_steps(101, 4), [0, 25, 50, 75, 100]);
-    assert_eq!(export::growth_steps(1, 8), [0]);
-}
-
-#[test]
 fn a_failed_write_leaves_what_was_there() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");

@@ -130,7 +130,7 @@ fn each_value_has_its_range() {
     let refused = |draft: Draft| Scene::new(draft).unwrap_err().to_string();
     assert!(refused(Draft { resolution: 0, ..draft() }).contains("about 0 B of memory"));
     let huge = refused(Draft { resolution: 100_000, ..draft() });
-    assert!(huge.contains("100000") && huge.contains("PB of memory"), "{huge}");
+    assert!(huge.contains("100000") && huge.contains("EB of memory"), "{huge}");
     assert!(refused(Draft { resolution: 257, ..draft() }).contains("GB of memory"));
     for fidelity in [-0.1, 1.1, f32::NAN] {
         assert!(refused(Draft { fidelity, ..draft() }).contains("0 to 1"));

@@ -98,7 +98,7 @@ pub fn certify(complex: &Complex, shells: &mut [Shell], positions: &[Vec3A]) -> 
     Certificate {
         inverted,
         crossings: counts.first().map_or(0, Vec::len),
-        enclosed: enclosed(complex, positions),
+        enclosed: enclosed_bodies(complex, positions).len(),
         surface_crossings: counts.iter().skip(1).map(Vec::len).sum(),
         min_volume_ratio: least,
         worst,
@@ -145,14 +145,14 @@ fn elements(complex: &Complex, positions: &[Vec3A]) -> (usize, f64, Option<usize
         )
 }
 
-/// Number of bodies that lie inside another one: one node of each is looked at, which tells for all of it as long as no
+/// Bodies that lie inside another one: one node of each is looked at, which tells for all of it as long as no
 /// skins cross.
 ///
 /// The winding number of a closed skin around a point off it is a whole number; summed as solid angles (van Oosterom and
 /// Strackee 1983) it comes out within far less than the half that would be needed to mistake it.
-fn enclosed(complex: &Complex, positions: &[Vec3A]) -> usize {
+pub(crate) fn enclosed_bodies(complex: &Complex, positions: &[Vec3A]) -> Vec<u32> {
     if complex.bodies < 2 {
-        return 0;
+        return Vec::new();
     }
     let bodies = complex.bodies as usize;
     let mut bounds = vec![Bounds::EMPTY; bodies];
@@ -174,7 +174,8 @@ fn enclosed(complex: &Complex, positions: &[Vec3A]) -> usize {
                 a != b && bounds[b].meets(&Bounds { low: p, high: p }) && winding(&faces[b], positions, p).abs() > 0.5
             })
         })
-        .count()
+        .map(|a| a as u32)
+        .collect()
 }
 
 /// Winding number of a closed surface around a point.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::{
     boundary::{Boundary, Sets},
-    certificate::{Surface, orientation},
+    certificate::{Surface, enclosed_bodies, orientation},
     edge::CHUNK,
     film::blend,
     transfer::Binding,
@@ -344,6 +344,12 @@ impl Step<'_> {
             let state: Cow<'_, [Vec3A]> =
                 if part < 1.0 { Cow::Owned(blend(self.current, proposed, part)) } else { Cow::Borrowed(proposed) };
             marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
+            // A small body may be inside another after one step without having been seen to cross its skin.
+            let enclosed = enclosed_bodies(self.complex, &state);
+            if !enclosed.is_empty() {
+                let nodes = 0..self.complex.nodes() as u32;
+                marked.extend(nodes.filter(|&i| enclosed.contains(&self.complex.body[i as usize])));
+            }
             for (shell, near) in self.shells.iter().zip(self.near) {
                 shell.mark_crossings(near, &state, moved, &mut marked);
             }

@@ -14,10 +14,6 @@ use crate::boundary::Boundary;
 use crate::error::{Error, Result};
 use std::io::Write as _;
 
-/// How many morph targets a growth has unless asked otherwise: what every viewer can hold, and as many as straight paths
-/// need to follow a growth by eye. Half shows corners in the motion; double doubles the file.
-pub const GROWTH_TARGETS: usize = 8;
-
 /// The rests at both ends, as a part of the growing time.
 const HOLD: f32 = 0.25;
 
@@ -28,19 +24,6 @@ pub struct GrowthFrame<'a> {
     pub lambda: f32,
     /// `[vertices]` positions, source units.
     pub positions: &'a [DVec3],
-}
-
-/// Which of `available` frames to take for `targets` morph targets: the first, the last, evenly between.
-///
-/// ```
-/// assert_eq!(homunculus::export::growth_steps(33, 8), [0, 4, 8, 12, 16, 20, 24, 28, 32]);
-/// ```
-pub fn growth_steps(available: usize, targets: usize) -> Vec<usize> {
-    let last = available.saturating_sub(1);
-    let steps = targets.min(last).max(1);
-    let mut picks: Vec<usize> = (0..=steps).map(|k| (k * last + steps / 2) / steps).collect();
-    picks.dedup();
-    picks
 }
 
 /// Writes the growth: one self-contained GLB that plays in any glTF viewer.

@@ -32,7 +32,7 @@ use glam::DVec3;
 use crate::boundary::source::srgb_from_linear;
 use crate::boundary::{Boundary, Kind};
 use crate::error::{Error, Result};
-pub use growth::{GROWTH_TARGETS, GrowthFrame, growth, growth_steps};
+pub use growth::{GrowthFrame, growth};
 
 /// What the writers of all formats are given.
 pub(crate) struct Surface<'a> {
