@@ -121,10 +121,10 @@ impl Shell {
         }
     }
 
-    fn nodes_of(&self, vertex: u32) -> Cow<'_, [u32]> {
+    fn nodes_of(&self, vertex: u32) -> Vec<u32> {
         match &self.binding {
-            None => Cow::Owned(vec![vertex]),
-            Some(binding) => Cow::Borrowed(&binding.nodes[vertex as usize]),
+            None => vec![vertex],
+            Some(binding) => binding.carriers(vertex).collect(),
         }
     }
 
@@ -133,8 +133,7 @@ impl Shell {
         match &self.binding {
             None => self.surface.near_pairs(a, b, 0.0),
             Some(binding) => {
-                let low = binding.apply_between(a, b, Vec3A::min);
-                let high = binding.apply_between(a, b, Vec3A::max);
+                let [low, high] = binding.bounds_between(a, b);
                 // A hundredth of a cell covers the rounding of B' many times over.
                 self.surface.near_pairs(&low, &high, 0.01)
             }
@@ -143,12 +142,16 @@ impl Shell {
 
     /// Adds the nodes of crossing pairs among `near` in a state, of those that have a node in `moved` if given.
     fn mark_crossings(&self, near: &[(u32, u32)], nodes: &[Vec3A], moved: Option<&[bool]>, marked: &mut Vec<u32>) {
-        let touched = |t: u32| match moved {
-            None => true,
-            Some(moved) => {
-                let mut corners = self.surface.triangles[t as usize].iter();
-                corners.any(|&v| self.nodes_of(v).iter().any(|&i| moved[i as usize]))
-            }
+        let vertex_moved: Option<Vec<bool>> = moved.map(|moved| match &self.binding {
+            None => moved.to_vec(),
+            Some(binding) => (0..binding.nodes.len() as u32)
+                .into_par_iter()
+                .map(|v| binding.carriers(v).any(|i| moved[i as usize]))
+                .collect(),
+        });
+        let touched = |t: u32| {
+            let corners = &self.surface.triangles[t as usize];
+            vertex_moved.as_ref().is_none_or(|moved| corners.iter().any(|&v| moved[v as usize]))
         };
         let again: Vec<(u32, u32)> = near.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect();
         if again.is_empty() {
@@ -174,7 +177,7 @@ impl Shell {
 
     /// The nodes that carry triangle `t`: where a crossing is.
     pub(crate) fn nodes_of_triangle(&self, t: u32) -> Vec<u32> {
-        self.surface.triangles[t as usize].iter().flat_map(|&v| self.nodes_of(v).into_owned()).collect()
+        self.surface.triangles[t as usize].iter().flat_map(|&v| self.nodes_of(v)).collect()
     }
 }
 

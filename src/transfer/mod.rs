@@ -2,9 +2,13 @@
 //!
 //! # Changes from the paper
 //! The paper sets `B' = Σ (α, β, γ, δ) V''`; in exact arithmetic that is the same, in floating point the form with the
-//! displacement gives back the input's own digits where nothing moved.
+//! displacement gives back the input's own digits where nothing moved. And V'' is first refined by one smooth halving of
+//! the lattice ([`Refinement`]), so that a fine surface does not show the lattice it was carried by.
 
 pub mod plugin;
+mod refine;
+
+pub use refine::Refinement;
 
 use glam::{DVec3, IVec3, Vec3A};
 use rayon::prelude::*;
@@ -17,14 +21,15 @@ use crate::{
 /// Barycentric coordinates of every boundary vertex in its element, computed once.
 #[derive(Debug, Clone)]
 pub struct Binding {
-    /// `[vertices]` the element's four nodes.
+    /// `[vertices]` the four nodes of its element in the halved lattice.
     pub nodes: Vec<[u32; 4]>,
     /// `[vertices]` α β γ δ, each in 0..=1, summing to 1; all zero for a vertex outside the complex (one that no triangle
     /// uses), which stays where it is.
     pub weights: Vec<[f32; 4]>,
     /// B in source units.
     rest: Vec<DVec3>,
-    /// V.
+    refinement: Refinement,
+    /// V, refined.
     rest_nodes: Vec<Vec3A>,
     grid: Grid,
     /// Whether results are rounded to f32, as files hold them.
@@ -83,27 +88,41 @@ impl<'a> CellIndex<'a> {
     pub(crate) fn barycentric(&self, cell: u32, p: DVec3) -> ([u32; 4], [f32; 4]) {
         let corners = &self.complex.corners[cell as usize];
         let local = (p - self.complex.cells[cell as usize].as_dvec3()).clamp(DVec3::ZERO, DVec3::ONE);
-        // The Kuhn element holds the points whose coordinates are sorted as its path walks the axes.
-        let mut axes = [0, 1, 2];
-        axes.sort_by(|&a, &b| local[b].total_cmp(&local[a]));
-        let [a, b, c] = axes;
-        let path = [0, 1 << a, 1 << a | 1 << b, 7];
-        let weights = [1.0 - local[a], local[a] - local[b], local[b] - local[c], local[c]];
-        (path.map(|k: usize| corners[k]), weights.map(|w| w as f32))
+        let (path, weights) = kuhn(local);
+        (path.map(|k: usize| corners[k]), weights)
     }
+}
+
+/// The Kuhn element of the unit cell that holds a point, as corner bits, and the point's barycentric weights: coordinates
+/// sorted as the element's path walks the axes.
+fn kuhn(local: DVec3) -> ([usize; 4], [f32; 4]) {
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|&a, &b| local[b].total_cmp(&local[a]));
+    let [a, b, c] = axes;
+    let weights = [1.0 - local[a], local[a] - local[b], local[b] - local[c], local[c]];
+    ([0, 1 << a, 1 << a | 1 << b, 7], weights.map(|w| w as f32))
 }
 
 impl Binding {
     /// Binds every vertex of the boundary to the complex made from it.
     pub fn new(boundary: &Boundary, complex: &Complex) -> Self {
         let cells = CellIndex::new(complex);
+        let refinement = Refinement::new(complex);
+        let bind = |cell: u32, p: DVec3| {
+            let local = 2.0 * (p - complex.cells[cell as usize].as_dvec3()).clamp(DVec3::ZERO, DVec3::ONE);
+            let octant = local.floor().min(DVec3::ONE);
+            let (path, weights) = kuhn(local - octant);
+            let corners = &complex.corners[cell as usize];
+            let at = |k: usize| std::array::from_fn(|a| octant[a] as usize + (k >> a & 1));
+            (path.map(|k| refinement.node_in_cell(corners, at(k))), weights)
+        };
         let bound: Vec<([u32; 4], [f32; 4])> = boundary
             .positions
             .par_iter()
             .with_min_len(VERTICES_PER_TASK)
             .map(|&p| {
                 let p = complex.grid.lattice_from_source(p);
-                cells.locate(p).map_or(([0; 4], [0.0; 4]), |cell| cells.barycentric(cell, p))
+                cells.locate(p).map_or(([0; 4], [0.0; 4]), |cell| bind(cell, p))
             })
             .collect();
         let (nodes, weights) = bound.into_iter().unzip();
@@ -115,7 +134,8 @@ impl Binding {
             nodes,
             weights,
             rest: boundary.positions.clone(),
-            rest_nodes: complex.rest.clone(),
+            rest_nodes: refinement.apply(&complex.rest),
+            refinement,
             grid,
             single: !far && representable,
         }
@@ -136,6 +156,7 @@ impl Binding {
 
     /// B' of a state, in source units, rounded as it will be written.
     pub fn apply(&self, nodes: &[Vec3A]) -> Vec<DVec3> {
+        let nodes = &self.refinement.apply(nodes);
         (0..self.nodes.len()).into_par_iter().with_min_len(VERTICES_PER_TASK).map(|v| self.vertex(v, nodes)).collect()
     }
 
@@ -153,6 +174,7 @@ impl Binding {
 
     /// B' of a state for comparing its triangles: source units where files hold f32, else cells.
     pub fn apply_for_check(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
+        let nodes = &self.refinement.apply(nodes);
         (0..self.nodes.len())
             .into_par_iter()
             .with_min_len(VERTICES_PER_TASK)
@@ -168,14 +190,21 @@ impl Binding {
         if self.single { self.grid.cell_size as f32 } else { 1.0 }
     }
 
-    /// B' in cells, each node taking `pick(a, b)` of two states: bounds of what lies between them.
-    pub(crate) fn apply_between(&self, a: &[Vec3A], b: &[Vec3A], pick: fn(Vec3A, Vec3A) -> Vec3A) -> Vec<Vec3A> {
-        (0..self.nodes.len())
-            .into_par_iter()
-            .with_min_len(VERTICES_PER_TASK)
-            .map(|v| {
-                self.nodes[v].iter().zip(&self.weights[v]).map(|(&i, &w)| w * pick(a[i as usize], b[i as usize])).sum()
-            })
-            .collect()
+    /// Bounds of B' in cells for every state that takes each node anywhere between two: lowest and highest corners.
+    pub(crate) fn bounds_between(&self, a: &[Vec3A], b: &[Vec3A]) -> [Vec<Vec3A>; 2] {
+        let low: Vec<Vec3A> = a.iter().zip(b).map(|(a, b)| a.min(*b)).collect();
+        let high: Vec<Vec3A> = a.iter().zip(b).map(|(a, b)| a.max(*b)).collect();
+        [self.refinement.extreme(&low, &high), self.refinement.extreme(&high, &low)].map(|nodes| {
+            (0..self.nodes.len())
+                .into_par_iter()
+                .with_min_len(VERTICES_PER_TASK)
+                .map(|v| self.nodes[v].iter().zip(&self.weights[v]).map(|(&i, &w)| w * nodes[i as usize]).sum())
+                .collect()
+        })
+    }
+
+    /// The complex's nodes that carry a vertex; some come more than once.
+    pub fn carriers(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        self.nodes[vertex as usize].iter().flat_map(|&node| self.refinement.carriers(node))
     }
 }
