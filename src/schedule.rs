@@ -27,7 +27,10 @@ use crate::{
     },
     diagnostics::Stopwatch,
     edge::plugin::{EdgePlugin, LinearSolution},
-    film::plugin::{FilmPlugin, Reel},
+    film::{
+        Keyframe,
+        plugin::{FilmPlugin, Reel},
+    },
     importance::{
         self,
         plugin::{Importance, ImportancePlugin},
@@ -242,7 +245,7 @@ pub struct Outcome {
     pub classic: Option<Counts>,
     /// Of the last frame.
     pub certificate: Certificate,
-    /// By ascending λ: the rest shape first, λ = 1 last. States that were checked and failed are among them.
+    /// By ascending λ: the rest shape first, λ = 1 last.
     pub frames: Vec<Frame>,
     /// Size asked against size achieved.
     pub fidelity: Fidelity,
@@ -324,24 +327,17 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
     let (importance, linear) = (get.get::<Importance>()?, get.get::<LinearSolution>()?);
 
     let classic = watch.time("classic", || certify(complex, &mut shells[..1], &linear.0));
-    let (chosen, failed) =
-        watch.time("certificate", || film.select(domain.settings.keys, complex, &mut shells, &problem.importance));
-    let mut frames: Vec<Frame> = watch.time("transfer", || {
-        chosen
-            .iter()
-            .map(|&k| &film.keyframes()[k])
-            .map(|k| Frame {
-                lambda: k.lambda,
-                positions: binding.apply(&k.positions),
-                certificate: k.certificate.clone(),
-            })
-            .collect()
-    });
-    for (lambda, certificate) in failed {
-        let positions = binding.apply(&film.at(lambda));
-        let after = frames.partition_point(|f| f.lambda < lambda);
-        frames.insert(after, Frame { lambda, positions, certificate });
+    if domain.settings.reference.is_none() {
+        watch.time("certificate", || film.mend(complex, &mut shells, &problem.importance));
     }
+    let frames: Vec<Frame> = watch.time("transfer", || {
+        let frame = |k: &Keyframe| Frame {
+            lambda: k.lambda,
+            positions: binding.apply(&k.positions),
+            certificate: k.certificate.clone(),
+        };
+        film.keyframes().iter().map(frame).collect()
+    });
     let last = film.keyframes().last()?;
     let names = domain.boundary.regions.as_ref().map_or(&[][..], |r| &r.names);
     let (fidelity, distortion) = watch.time("fidelity", || {

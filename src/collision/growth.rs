@@ -11,7 +11,7 @@ pub const LEAST_STEPS: usize = 20;
 const ITERATIONS_PER_STEP: [u32; 2] = [2, 4];
 
 /// Iterations at λ = 1 at most.
-const SETTLING_ITERATIONS: u32 = 80;
+const SETTLING_ITERATIONS: u32 = 40;
 
 /// Iterations at λ = 1 at least.
 const LEAST_SETTLING: u32 = 8;

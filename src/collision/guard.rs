@@ -250,7 +250,8 @@ pub enum Watch {
 }
 
 impl Watch {
-    fn parts(self) -> &'static [f32] {
+    /// Parts of the step that are looked at, the last one 1.
+    pub const fn parts(self) -> &'static [f32] {
         match self {
             Self::End => &[1.0],
             Self::Way => &[0.25, 0.5, 0.75, 1.0],

@@ -33,11 +33,8 @@ pub struct Film {
     keyframes: Vec<Keyframe>,
 }
 
-/// Blends that are checked between two chosen keyframes; half-way is checked when a keyframe is made.
-const BLENDS: [f32; 2] = [0.3, 0.7];
-
-/// Intervals of λ are not halved below this: less than a frame of any recording.
-const SHORTEST_STEP: f32 = 5.0e-4;
+/// Between keyframes nearer in λ than this no other is put.
+const SHORTEST_STEP: f32 = 0.03;
 
 impl Film {
     /// Adds the next keyframe; its λ must be above the last one's, or equal, which replaces it.
@@ -53,70 +50,37 @@ impl Film {
         &self.keyframes
     }
 
-    /// The state at λ, blended from its two neighbours.
-    pub fn at(&self, lambda: f32) -> Vec<Vec3A> {
-        let after = self.keyframes.partition_point(|k| k.lambda < lambda);
-        match (after.checked_sub(1).and_then(|k| self.keyframes.get(k)), self.keyframes.get(after)) {
-            (Some(a), Some(b)) => blend(&a.positions, &b.positions, (lambda - a.lambda) / (b.lambda - a.lambda)),
-            (Some(k), None) | (None, Some(k)) => k.positions.clone(),
-            (None, None) => Vec::new(),
+    /// Makes every blend of two neighbouring keyframes valid where it is looked at ([`Watch::Way`]): by new keyframes
+    /// between them, and where that does not help, by drawing the later one back to what can be reached from the earlier.
+    pub fn mend(&mut self, complex: &Complex, shells: &mut [Shell], size: &[f32]) {
+        let mut k = 1;
+        while k < self.keyframes.len() {
+            let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
+            let sound = from.certificate.certified();
+            if !sound || way_is_clear(from, to, complex, shells) {
+                k += 1;
+            } else if to.lambda - from.lambda > SHORTEST_STEP {
+                let keyframe = between(complex, shells, size, from, to);
+                self.keyframes.insert(k, keyframe);
+            } else {
+                let mut positions = to.positions.clone();
+                guard(complex, shells, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
+                let certificate = certify(complex, shells, &positions);
+                self.keyframes[k] = Keyframe { lambda: to.lambda, positions, certificate };
+                k += 1;
+            }
         }
     }
+}
 
-    /// Chooses about `keys` keyframes after the rest state, evenly in λ, and more wherever a blend of two chosen ones
-    /// fails the check: ones the film holds between them, else new ones, made by [`between`]. Returns their indices,
-    /// first and last included, and the certificates of blends that could not be mended.
-    pub fn select(
-        &mut self,
-        keys: usize,
-        complex: &Complex,
-        shells: &mut [Shell],
-        size: &[f32],
-    ) -> (Vec<usize>, Vec<(f32, Certificate)>) {
-        let Some(last) = self.keyframes.len().checked_sub(1) else { return (Vec::new(), Vec::new()) };
-        let mut chosen: Vec<usize> = (0..=keys)
-            .map(|k| {
-                let lambda = k as f32 / keys.max(1) as f32;
-                self.keyframes.partition_point(|f| f.lambda < lambda - 1.0e-4).min(last)
-            })
-            .collect();
-        chosen.dedup();
-        let mut failed = Vec::new();
-        let mut k = 0;
-        while k + 1 < chosen.len() {
-            let (a, b) = (chosen[k], chosen[k + 1]);
-            let Some(bad) = self.bad_blend(a, b, complex, shells) else {
-                k += 1;
-                continue;
-            };
-            if b - a > 1 {
-                chosen.insert(k + 1, usize::midpoint(a, b));
-                continue;
-            }
-            let (from, to) = (&self.keyframes[a], &self.keyframes[b]);
-            let sound = from.certificate.certified() && to.certificate.certified();
-            if !sound || to.lambda - from.lambda < SHORTEST_STEP {
-                failed.push(bad);
-                k += 1;
-                continue;
-            }
-            let keyframe = between(complex, shells, size, from, to);
-            self.keyframes.insert(b, keyframe);
-            for later in &mut chosen[k + 1..] {
-                *later += 1;
-            }
-            chosen.insert(k + 1, b);
-        }
-        (chosen, failed)
-    }
-
-    fn bad_blend(&self, a: usize, b: usize, complex: &Complex, shells: &mut [Shell]) -> Option<(f32, Certificate)> {
-        let (a, b) = (&self.keyframes[a], &self.keyframes[b]);
-        BLENDS.iter().find_map(|&t| {
-            let certificate = certify(complex, shells, &blend(&a.positions, &b.positions, t));
-            (!certificate.certified()).then_some((a.lambda + t * (b.lambda - a.lambda), certificate))
-        })
-    }
+/// Whether the blends of two keyframes are valid where they are looked at; the later keyframe itself is one of them.
+fn way_is_clear(a: &Keyframe, b: &Keyframe, complex: &Complex, shells: &mut [Shell]) -> bool {
+    b.certificate.certified()
+        && Watch::Way
+            .parts()
+            .iter()
+            .filter(|&&t| t < 1.0)
+            .all(|&t| certify(complex, shells, &blend(&a.positions, &b.positions, t)).certified())
 }
 
 /// A keyframe half-way between two, guarded from the first of them.

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use glam::Vec3A;
 
-use super::{Film, Keyframe, blend};
+use super::{Film, Keyframe};
 use crate::{
     certificate::{Certificate, certify},
     collision::{
@@ -57,10 +57,7 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         }
         let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
         let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
-        let half_way = film.keyframes().last().map(|last| blend(&last.positions, warped, 0.5));
-        let way_is_clear =
-            half_way.is_none_or(|state| watch.time("certificate", || certify(complex, shells, &state)).certified());
-        if !certificate.certified() || !way_is_clear {
+        if !certificate.certified() {
             at_risk.0 = true;
             certificate = draw_back(complex, &sizes.0.size, shells, film, warped, &mut watch);
         }

@@ -15,7 +15,7 @@
 use glam::Vec3A;
 use rayon::prelude::*;
 
-use crate::voxel::{Complex, NEIGHBOURS, opposite};
+use crate::voxel::{Complex, opposite};
 
 /// Nodes per parallel task.
 const NODES_PER_TASK: usize = 4096;
@@ -35,8 +35,8 @@ impl Refinement {
     pub fn new(complex: &Complex) -> Self {
         let mut middles = Vec::new();
         let mut edge_of = vec![[u32::MAX; 7]; complex.nodes()];
-        for i in 0..complex.nodes() {
-            for slot in 0..NEIGHBOURS / 2 {
+        for (i, edges) in edge_of.iter_mut().enumerate() {
+            for (slot, edge) in edges.iter_mut().enumerate() {
                 let j = complex.neighbours[i][slot];
                 if j as usize == i {
                     continue;
@@ -45,7 +45,7 @@ impl Refinement {
                 let after = complex.neighbours[j as usize][slot];
                 let (has_before, has_after) = (before as usize != i, after != j);
                 let i = i as u32;
-                edge_of[i as usize][slot] = middles.len() as u32;
+                *edge = middles.len() as u32;
                 middles.push(match (has_before, has_after) {
                     (true, true) => ([i, j, before, after], [9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0, -1.0 / 16.0]),
                     (true, false) => ([i, j, before, i], [6.0 / 8.0, 3.0 / 8.0, -1.0 / 8.0, 0.0]),
