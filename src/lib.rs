@@ -28,7 +28,7 @@
 //! | [`film`] | – | certified states | what is played, exported, recorded |
 //! | [`transfer`] | 3.5 | B, V'' | B' |
 //!
-//! [`reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once and runs it.
+//! [`mod@reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once and runs it.
 //!
 //! # What is promised, and what carries it
 //!
