@@ -115,10 +115,14 @@ pub struct CertificateReport {
     pub inverted: usize,
     /// Pairs of the complex's boundary faces that cross.
     pub crossings: usize,
-    /// Pairs of the warped mesh's own triangles that cross, in the last frame.
+    /// Pairs of the warped mesh's own triangles that cross and did not in the input.
     pub surface_crossings: usize,
+    /// Bodies that lie inside another body.
+    pub enclosed: usize,
     /// Least volume of an element over its rest volume.
     pub min_volume_ratio: f64,
+    /// Where the last frame is worst, in units of the file: a crossing, an inverted element, or the smallest one.
+    pub worst: Option<[f64; 3]>,
     /// Each frame.
     pub frames: Vec<FrameReport>,
 }
@@ -132,6 +136,8 @@ pub struct FrameReport {
     pub inverted: usize,
     /// Pairs of boundary faces that cross.
     pub crossings: usize,
+    /// Pairs of the warped mesh's own triangles that cross and did not in the input.
+    pub surface_crossings: usize,
 }
 
 /// Size asked against size achieved; errors are max(s/f, f/s) − 1.
@@ -254,12 +260,15 @@ impl From<&Outcome> for CertificateReport {
             lambda: frame.lambda,
             inverted: frame.certificate.inverted(),
             crossings: frame.certificate.crossings(),
+            surface_crossings: frame.certificate.surface_crossings(),
         });
         Self {
             certified: all().all(|certificate| certificate.certified()),
             inverted: all().map(|certificate| certificate.inverted()).max().unwrap_or(0),
             crossings: all().map(|certificate| certificate.crossings()).max().unwrap_or(0),
-            surface_crossings: outcome.certificate.surface_crossings(),
+            surface_crossings: all().map(|certificate| certificate.surface_crossings()).max().unwrap_or(0),
+            enclosed: all().map(|certificate| certificate.enclosed()).max().unwrap_or(0),
+            worst: outcome.certificate.worst().map(|at| at.to_array()),
             min_volume_ratio: all().map(|certificate| certificate.min_volume_ratio()).fold(f64::INFINITY, f64::min),
             frames: frames.collect(),
         }
