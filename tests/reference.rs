@@ -48,7 +48,7 @@ fn read_sensibly_fig5_grows_to_the_linear_lengths() {
 fn read_to_the_letter_fig5_diverges() {
     let x = run(Reading::Printed, 1000);
     let size = length(&x);
-    assert!(x.iter().any(|p| !p.is_finite()) || !(size < 1000.0), "it stayed at {size}");
+    assert!(x.iter().any(|p| !p.is_finite()) || size.is_nan() || size > 1000.0, "it stayed at {size}");
 }
 
 #[test]

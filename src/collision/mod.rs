@@ -18,6 +18,7 @@ pub mod growth;
 pub mod guard;
 pub mod local;
 pub mod plugin;
+mod shell;
 
 use glam::{DMat3, DVec3, Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
@@ -28,7 +29,8 @@ use crate::{
 };
 pub use contact::Contacts;
 pub use growth::Growth;
-pub use guard::{Guarded, Shell, Watch};
+pub use guard::{Guarded, Watch};
+pub use shell::Shell;
 
 /// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing
 /// (measured: the rotations, not the solve, are what converges slowly).

@@ -1,0 +1,214 @@
+//! Surfaces carried by the nodes that must not cross themselves.
+
+use std::borrow::Cow;
+
+use glam::Vec3A;
+use rayon::prelude::*;
+
+use crate::{
+    boundary::{Boundary, Sets},
+    certificate::Surface,
+    transfer::Binding,
+    voxel::Complex,
+};
+
+/// A surface carried by the nodes that must not cross itself: the complex's own skin, or the boundary bound to it.
+#[derive(Debug, Clone)]
+pub struct Shell {
+    surface: Surface,
+    /// How its vertices follow the nodes; `None` where they are the nodes.
+    binding: Option<Binding>,
+    /// How many pairs of triangles crossed at rest already: what the input brought is not ours to mend. Triangles that
+    /// touch but for rounding are treated alike.
+    inherited: usize,
+    /// Pairs of corner identities, one from each triangle of such a pair, both ways, sorted. A crossing may slide along
+    /// the surface, so that triangles crossed next to those that did are the same crossing.
+    inherited_corners: Vec<(u32, u32)>,
+    /// `[triangles]` piece of surface that hangs together; empty for the skin.
+    piece: Vec<u32>,
+    /// Pairs of pieces that crossed at rest, both ways, sorted: an eye in its socket, a spout stuck into a pot. They stay
+    /// stuck into each other, and their crossing may slide far.
+    inherited_pieces: Vec<(u32, u32)>,
+}
+
+impl Shell {
+    /// The boundary faces of the complex.
+    pub fn skin(complex: &Complex) -> Self {
+        Self {
+            surface: Surface::new(complex.faces.clone(), &complex.rest),
+            binding: None,
+            inherited: 0,
+            inherited_corners: Vec::new(),
+            piece: Vec::new(),
+            inherited_pieces: Vec::new(),
+        }
+    }
+
+    /// The boundary surface B as it will be written.
+    ///
+    /// B' is made of flat triangles between moved vertices, while the complex bends between them: that the complex does
+    /// not cross itself is not enough where triangles are larger than cells.
+    pub fn boundary(boundary: &Boundary, binding: Binding, complex: &Complex) -> Self {
+        let welded = boundary.welded();
+        let identities = boundary.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
+        let rest = binding.apply_for_check(&complex.rest);
+        let mut surface = Surface::welded(boundary.triangles.clone(), identities, &rest);
+        let mut inherited = surface.crossings(&rest);
+        let crossing_at_rest = inherited.len();
+        for seed in 1..=NUDGES {
+            inherited.extend(surface.crossings(&nudged(&rest, &welded, NUDGE * binding.check_cell_size(), seed)));
+        }
+        inherited.sort_unstable();
+        inherited.dedup();
+        let mut inherited_corners: Vec<(u32, u32)> = inherited
+            .iter()
+            .flat_map(|&(s, t)| [(s, t), (t, s)])
+            .flat_map(|(s, t)| {
+                let (s, t) = (surface.identities[s as usize], surface.identities[t as usize]);
+                s.into_iter().flat_map(move |a| t.map(|b| (a, b)))
+            })
+            .collect();
+        inherited_corners.sort_unstable();
+        inherited_corners.dedup();
+        let piece = pieces(&surface.identities, boundary.positions.len());
+        let mut inherited_pieces: Vec<(u32, u32)> = inherited
+            .iter()
+            .map(|&(s, t)| (piece[s as usize], piece[t as usize]))
+            .filter(|(a, b)| a != b)
+            .flat_map(|(a, b)| [(a, b), (b, a)])
+            .collect();
+        inherited_pieces.sort_unstable();
+        inherited_pieces.dedup();
+        Self {
+            surface,
+            binding: Some(binding),
+            inherited: crossing_at_rest,
+            inherited_corners,
+            piece,
+            inherited_pieces,
+        }
+    }
+
+    /// Pairs that crossed at rest.
+    pub fn inherited(&self) -> usize {
+        self.inherited
+    }
+
+    /// Whether a crossing of these triangles was there at rest, between them or their neighbours.
+    fn is_inherited(&self, (s, t): (u32, u32)) -> bool {
+        if self.inherited_corners.is_empty() {
+            return false;
+        }
+        let pieces = (self.piece[s as usize], self.piece[t as usize]);
+        self.inherited_pieces.binary_search(&pieces).is_ok()
+            || self.surface.identities[s as usize].iter().any(|&a| {
+                self.surface.identities[t as usize]
+                    .iter()
+                    .any(|&b| self.inherited_corners.binary_search(&(a, b)).is_ok())
+            })
+    }
+
+    fn positions<'a>(&self, nodes: &'a [Vec3A]) -> Cow<'a, [Vec3A]> {
+        match &self.binding {
+            None => Cow::Borrowed(nodes),
+            Some(binding) => Cow::Owned(binding.apply_for_check(nodes)),
+        }
+    }
+
+    fn nodes_of(&self, vertex: u32) -> Vec<u32> {
+        match &self.binding {
+            None => vec![vertex],
+            Some(binding) => binding.carriers(vertex).collect(),
+        }
+    }
+
+    /// Pairs that may cross in any state between two, node by node.
+    pub(super) fn near_pairs(&mut self, a: &[Vec3A], b: &[Vec3A]) -> Vec<(u32, u32)> {
+        match &self.binding {
+            None => self.surface.near_pairs(a, b, 0.0),
+            Some(binding) => {
+                let [low, high] = binding.bounds_between(a, b);
+                // A hundredth of a cell covers the rounding of B' many times over.
+                self.surface.near_pairs(&low, &high, 0.01)
+            }
+        }
+    }
+
+    /// Adds the nodes of crossing pairs among `near` in a state, of those that have a node in `moved` if given.
+    pub(super) fn mark_crossings(
+        &self,
+        near: &[(u32, u32)],
+        nodes: &[Vec3A],
+        moved: Option<&[bool]>,
+        marked: &mut Vec<u32>,
+    ) {
+        let vertex_moved: Option<Vec<bool>> = moved.map(|moved| match &self.binding {
+            None => moved.to_vec(),
+            Some(binding) => (0..binding.nodes.len() as u32)
+                .into_par_iter()
+                .map(|v| binding.carriers(v).any(|i| moved[i as usize]))
+                .collect(),
+        });
+        let touched = |t: u32| {
+            let corners = &self.surface.triangles[t as usize];
+            vertex_moved.as_ref().is_none_or(|moved| corners.iter().any(|&v| moved[v as usize]))
+        };
+        let again: Vec<(u32, u32)> = near.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect();
+        if again.is_empty() {
+            return;
+        }
+        let crossing = self.surface.crossing_pairs(&again, &self.positions(nodes));
+        for (s, t) in crossing.into_iter().filter(|&pair| !self.is_inherited(pair)) {
+            marked.extend(self.nodes_of_triangle(s));
+            marked.extend(self.nodes_of_triangle(t));
+        }
+    }
+
+    /// All crossing pairs of a state that were not there at rest. Exact.
+    pub fn crossings(&mut self, nodes: &[Vec3A]) -> Vec<(u32, u32)> {
+        let positions = match &self.binding {
+            None => Cow::Borrowed(nodes),
+            Some(binding) => Cow::Owned(binding.apply_for_check(nodes)),
+        };
+        let mut pairs = self.surface.crossings(&positions);
+        pairs.retain(|&pair| !self.is_inherited(pair));
+        pairs
+    }
+
+    /// The nodes that carry triangle `t`: where a crossing is.
+    pub(crate) fn nodes_of_triangle(&self, t: u32) -> Vec<u32> {
+        self.surface.triangles[t as usize].iter().flat_map(|&v| self.nodes_of(v)).collect()
+    }
+}
+
+/// How far vertices are nudged to find triangles that touch but for rounding, in cells: some units in the last place of
+/// f32 coordinates at 256 cells. Sheets nearer to each other than that cross or not by chance once they are moved.
+const NUDGE: f32 = 5.0e-5;
+
+/// Nudged copies of the rest surface that are looked at.
+const NUDGES: u32 = 2;
+
+/// Every point moved by up to `size` along each axis; equal identities move alike.
+fn nudged(points: &[Vec3A], identities: &[u32], size: f32, seed: u32) -> Vec<Vec3A> {
+    let hash = |x: u32| {
+        let x = (x ^ (x >> 16)).wrapping_mul(0x7FEB_352D);
+        let x = (x ^ (x >> 15)).wrapping_mul(0x846C_A68B);
+        ((x ^ (x >> 16)) >> 8) as f32 / (1 << 23) as f32 - 1.0
+    };
+    let axis = |id: u32, k: u32| hash(id.wrapping_mul(3).wrapping_add(k) ^ seed.wrapping_mul(0x9E37_79B9));
+    points
+        .iter()
+        .zip(identities)
+        .map(|(p, &id)| *p + size * Vec3A::new(axis(id, 0), axis(id, 1), axis(id, 2)))
+        .collect()
+}
+
+/// `[triangles]` a number for each set of triangles that hang together by corners.
+fn pieces(identities: &[[u32; 3]], vertices: usize) -> Vec<u32> {
+    let mut sets = Sets::new(vertices);
+    for &[a, b, c] in identities {
+        sets.join(a, b);
+        sets.join(b, c);
+    }
+    identities.iter().map(|t| sets.find(t[0])).collect()
+}
