@@ -80,8 +80,10 @@ const CELLS_PER_TASK: usize = 512;
 
 /// Checks a state: all elements, and all pairs of faces of the given shells (the first is the complex's skin).
 pub fn certify(complex: &Complex, shells: &mut [Shell], positions: &[Vec3A]) -> Certificate {
-    let (inverted, least, worst_cell) = elements(complex, positions);
-    let counts: Vec<Vec<(u32, u32)>> = shells.iter_mut().map(|s| s.crossings(positions)).collect();
+    let ((inverted, least, worst_cell), counts): (_, Vec<Vec<(u32, u32)>>) = rayon::join(
+        || elements(complex, positions),
+        || shells.par_iter_mut().map(|s| s.crossings(positions)).collect(),
+    );
     let crossing_at = shells.iter().zip(&counts).find_map(|(shell, pairs)| {
         let &(triangle, _) = pairs.first()?;
         Some(shell.nodes_of_triangle(triangle))
