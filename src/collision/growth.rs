@@ -11,7 +11,11 @@ pub const LEAST_STEPS: usize = 20;
 const ITERATIONS_PER_STEP: [u32; 2] = [2, 4];
 
 /// Iterations at λ = 1 at most.
-const SETTLING_ITERATIONS: u32 = 40;
+const SETTLING_ITERATIONS: u32 = 80;
+
+/// The same where the boundary is guarded in every iteration: each costs several times as much there, and what is held
+/// does not come to rest.
+const HURRIED_ITERATIONS: u32 = 40;
 
 /// Iterations at λ = 1 at least.
 const LEAST_SETTLING: u32 = 8;
@@ -29,6 +33,7 @@ pub struct Growth {
     step: usize,
     iteration: u32,
     motion: f32,
+    patience: u32,
 }
 
 impl Growth {
@@ -49,7 +54,7 @@ impl Growth {
             }
             steps.push(b);
         }
-        Self { steps, keys: keys.max(1), step: 0, iteration: 0, motion: f32::INFINITY }
+        Self { steps, keys: keys.max(1), step: 0, iteration: 0, motion: f32::INFINITY, patience: SETTLING_ITERATIONS }
     }
 
     /// λ now.
@@ -79,7 +84,7 @@ impl Growth {
         if self.step + 1 < self.steps.len() {
             self.iteration >= ITERATIONS_PER_STEP[usize::from(self.is_key())]
         } else {
-            self.iteration >= SETTLING_ITERATIONS || (self.iteration >= LEAST_SETTLING && self.motion < SETTLED_MOTION)
+            self.iteration >= self.patience || (self.iteration >= LEAST_SETTLING && self.motion < SETTLED_MOTION)
         }
     }
 
@@ -88,6 +93,11 @@ impl Growth {
         self.step += 1;
         self.iteration = 0;
         self.motion = f32::INFINITY;
+    }
+
+    /// Settles for less at λ = 1.
+    pub fn hurry(&mut self) {
+        self.patience = HURRIED_ITERATIONS;
     }
 
     /// Skips what is left.
@@ -104,7 +114,7 @@ impl Growth {
     pub fn fraction(&self) -> f32 {
         let last = self.steps.len().saturating_sub(1).max(1) as f32;
         let within = self.iteration as f32
-            / if self.step as f32 >= last { SETTLING_ITERATIONS } else { ITERATIONS_PER_STEP[1] } as f32;
+            / if self.step as f32 >= last { self.patience } else { ITERATIONS_PER_STEP[1] } as f32;
         if self.step as f32 >= last { 0.8 + 0.2 * within.min(1.0) } else { 0.8 * (self.step as f32 + within) / last }
     }
 }

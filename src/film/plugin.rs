@@ -59,6 +59,7 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
         if !certificate.certified() {
             at_risk.0 = true;
+            growing.0.hurry();
             certificate = draw_back(complex, &sizes.0.size, shells, film, warped, &mut watch);
         }
         film.push(Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate });

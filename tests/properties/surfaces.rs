@@ -54,9 +54,10 @@ fn cross_by_integers(points: &[I64Vec3], s: [u32; 3], t: [u32; 3]) -> bool {
             let (s, t) = (s.map(at), t.map(at));
             !apart(&s, &t, &axes(&s, &t))
         }
-        // Cones at the common corner: a section of one against the other, long enough for any of these coordinates.
+        // Cones at the common corner: a section of one against the other, long enough for any of these coordinates (a
+        // point 11 away is at most 150 of the cone's edges away), short enough for i64.
         [v] => {
-            const LONG: i64 = 10_000;
+            const LONG: i64 = 1000;
             let (v, far_s, far_t) = (at(v), others(s), others(t));
             let cone = [v, v + LONG * (far_t[0] - v), v + LONG * (far_t[1] - v)];
             !apart(&far_s, &cone, &axes(&far_s, &cone))
