@@ -93,7 +93,9 @@ impl SpatialHash {
 
     /// Calls `visit` for each entry in cells that meet the ball; an entry may come twice when two cells share a bucket.
     fn near(&self, p: Vec3A, radius: f32, mut visit: impl FnMut(u32)) {
-        let (low, high) = (Self::cell_of(p - radius, self.cell), Self::cell_of(p + radius, self.cell));
+        // A thousandth of a cell more, so that rounding of the ball's ends loses no point on its rim.
+        let reach = radius + 1.0e-3 * self.cell;
+        let (low, high) = (Self::cell_of(p - reach, self.cell), Self::cell_of(p + reach, self.cell));
         let buckets = self.start.len() - 1;
         for z in low.z..=high.z {
             for y in low.y..=high.y {
