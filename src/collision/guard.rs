@@ -85,9 +85,9 @@ pub fn guard(
     }
     let step = Step { complex, shells, near: &near, size, current, watch };
     for whole in WHOLE_STEPS {
-        let shortened: Vec<Vec3A> = current.iter().zip(&full).map(|(x, f)| *x + whole * (*f - *x)).collect();
-        let target = if whole < 1.0 { &shortened } else { &full };
-        if step.hold_back(target, proposed, holds, &mut guarded.rounds) {
+        let target =
+            if whole < 1.0 { Cow::Owned(blend(current, &full, whole)) } else { Cow::Borrowed(full.as_slice()) };
+        if step.hold_back(&target, proposed, holds, &mut guarded.rounds) {
             guarded.held_back = holds.iter().filter(|&&h| h > 0).count() as u32;
             return guarded;
         }

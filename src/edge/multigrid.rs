@@ -130,10 +130,9 @@ impl Multigrid {
             children: Vec::new(),
         }];
         let mut positions: Vec<IVec3> = complex.rest.iter().map(|p| p.as_ivec3()).collect();
-        let mut cells = complex.cells.clone();
         while levels.last().is_some_and(|l| l.diagonal.len() > COARSEST) {
             let Some(fine) = levels.last_mut() else { break };
-            let (coarse, coarse_positions, coarse_cells) = coarsen(fine, &positions, &cells);
+            let (coarse, coarse_positions) = coarsen(fine, &positions);
             if coarse.diagonal.len() * 10 > fine.diagonal.len() * 9 {
                 // Scattered single cells do not coarsen; smoothing alone serves them.
                 fine.parents.clear();
@@ -141,7 +140,6 @@ impl Multigrid {
             }
             levels.push(coarse);
             positions = coarse_positions;
-            cells = coarse_cells;
         }
         Self { levels }
     }
@@ -220,10 +218,7 @@ impl Multigrid {
 }
 
 /// Builds the next lattice and links `fine` to it.
-fn coarsen(fine: &mut Level, positions: &[IVec3], cells: &[IVec3]) -> (Level, Vec<IVec3>, Vec<IVec3>) {
-    let mut coarse_cells: Vec<IVec3> = cells.iter().map(|c| *c >> 1).collect();
-    coarse_cells.sort_unstable_by_key(|c| (c.z, c.y, c.x));
-    coarse_cells.dedup();
+fn coarsen(fine: &mut Level, positions: &[IVec3]) -> (Level, Vec<IVec3>) {
     let key = |p: IVec3| ((p.z as u64) << 40) | ((p.y as u64) << 20) | p.x as u64;
     // Only corners that are parents become unknowns: others would have empty rows.
     let mut keys: Vec<u64> = positions
@@ -279,7 +274,7 @@ fn coarsen(fine: &mut Level, positions: &[IVec3], cells: &[IVec3]) -> (Level, Ve
         children: Vec::new(),
     };
     galerkin(fine, &coarse_positions, &mut coarse);
-    (coarse, coarse_positions, coarse_cells)
+    (coarse, coarse_positions)
 }
 
 /// `Pᵀ A P`, row by row from the children of each coarse node.

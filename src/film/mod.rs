@@ -63,10 +63,7 @@ impl Film {
                 let keyframe = between(complex, shells, size, from, to);
                 self.keyframes.insert(k, keyframe);
             } else {
-                let mut positions = to.positions.clone();
-                guard(complex, shells, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
-                let certificate = certify(complex, shells, &positions);
-                self.keyframes[k] = Keyframe { lambda: to.lambda, positions, certificate };
+                self.keyframes[k] = reached(complex, shells, size, from, to.lambda, to.positions.clone());
                 k += 1;
             }
         }
@@ -85,10 +82,21 @@ fn way_is_clear(a: &Keyframe, b: &Keyframe, complex: &Complex, shells: &mut [She
 
 /// A keyframe half-way between two, guarded from the first of them.
 pub fn between(complex: &Complex, shells: &mut [Shell], size: &[f32], a: &Keyframe, b: &Keyframe) -> Keyframe {
-    let mut positions = blend(&a.positions, &b.positions, 0.5);
-    guard(complex, shells, size, &a.positions, &mut positions, Watch::Way, &mut Vec::new());
+    reached(complex, shells, size, a, 0.5 * (a.lambda + b.lambda), blend(&a.positions, &b.positions, 0.5))
+}
+
+/// The keyframe at λ that can be reached from another on the way to `positions`.
+fn reached(
+    complex: &Complex,
+    shells: &mut [Shell],
+    size: &[f32],
+    from: &Keyframe,
+    lambda: f32,
+    mut positions: Vec<Vec3A>,
+) -> Keyframe {
+    guard(complex, shells, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
     let certificate = certify(complex, shells, &positions);
-    Keyframe { lambda: 0.5 * (a.lambda + b.lambda), positions, certificate }
+    Keyframe { lambda, positions, certificate }
 }
 
 /// `(1 − t) a + t b`.
