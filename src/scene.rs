@@ -260,6 +260,23 @@ pub fn check_resolution(resolution: u32) -> Result<()> {
     )))
 }
 
+/// Cells along the longest side of a picture, at most.
+pub const MAX_FLAT_RESOLUTION: u32 = 512;
+
+/// Refuses a resolution out of range for a picture.
+///
+/// # Errors
+/// Names the range.
+pub fn check_flat_resolution(resolution: u32) -> Result<()> {
+    if (MIN_RESOLUTION..=MAX_FLAT_RESOLUTION).contains(&resolution) {
+        return Ok(());
+    }
+    let bytes = human_bytes(memory_estimate(f64::from(resolution).powi(2)));
+    Err(Error::input(format!(
+        "resolution {resolution} is not within {MIN_RESOLUTION} to {MAX_FLAT_RESOLUTION}: a full square would take about {bytes} of memory"
+    )))
+}
+
 /// RON in which `range: (0.5, 2.0)` need not be written `Some((0.5, 2.0))`.
 fn format() -> ron::Options {
     ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)

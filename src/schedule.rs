@@ -36,13 +36,13 @@ use crate::{
         plugin::{Importance, ImportancePlugin},
     },
     reference::plugin::{ReferenceIterations, ReferencePlugin},
-    scene::check_resolution,
+    scene::{check_flat_resolution, check_resolution},
     transfer::{
         Binding,
         plugin::{Bound, SelfIntersections, TransferPlugin},
     },
     voxel::{
-        Complex,
+        Complex, Flat,
         plugin::{Lattice, SuspectedWelds, VoxelPlugin},
         suspected_welds, voxelize,
     },
@@ -80,12 +80,26 @@ pub enum Stage {
 /// What to warp: the entity's first component.
 #[derive(Component, Debug, Clone)]
 pub struct Domain {
-    /// B.
+    /// B. Of a picture the flat mesh it is drawn on, which comes with the lattice.
     pub boundary: Arc<Boundary>,
-    /// F, as a function of the surface.
+    /// F, as a function of the surface; a picture brings its own.
     pub importance: Arc<importance::Stack>,
+    /// The picture, where it is one that is warped.
+    pub picture: Option<Arc<Flat>>,
     /// How.
     pub settings: Settings,
+}
+
+impl Domain {
+    /// A body.
+    pub fn body(boundary: Arc<Boundary>, importance: Arc<importance::Stack>, settings: Settings) -> Self {
+        Self { boundary, importance, picture: None, settings }
+    }
+
+    /// A picture.
+    pub fn picture(picture: Arc<Flat>, settings: Settings) -> Self {
+        Self { boundary: Arc::default(), importance: Arc::default(), picture: Some(picture), settings }
+    }
 }
 
 /// The first error a stage met; solving stops.
@@ -255,6 +269,8 @@ pub struct Outcome {
     pub seconds: Vec<(&'static str, f64)>,
     /// `[vertices]` importance.
     pub importance: Vec<f32>,
+    /// B.
+    pub boundary: Arc<Boundary>,
 }
 
 /// Warps a boundary: runs [`Solve`] until λ = 1 has settled, and hands out the film.
@@ -268,14 +284,21 @@ pub fn warp(
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<Outcome> {
-    check_resolution(settings.resolution)?;
+    solve(Domain::body(Arc::new(boundary.clone()), Arc::new(importance.clone()), settings.clone()), observer)
+}
+
+/// Warps a domain, body or picture.
+///
+/// # Errors
+/// As [`warp`].
+pub fn solve(domain: Domain, observer: &dyn Observer) -> Result<Outcome> {
+    let settings = &domain.settings;
+    match domain.picture {
+        None => check_resolution(settings.resolution)?,
+        Some(_) => check_flat_resolution(settings.resolution)?,
+    }
     let mut app = solver(settings.reference);
     let world = app.world_mut();
-    let domain = Domain {
-        boundary: Arc::new(boundary.clone()),
-        importance: Arc::new(importance.clone()),
-        settings: settings.clone(),
-    };
     let entity = world.spawn(domain).id();
     loop {
         observer.progress(&progress(world, entity));
@@ -339,9 +362,13 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
         film.keyframes().iter().map(frame).collect()
     });
     let last = film.keyframes().last()?;
-    let names = domain.boundary.regions.as_ref().map_or(&[][..], |r| &r.names);
+    let regions = match &domain.picture {
+        Some(picture) => picture.regions.as_ref(),
+        None => domain.boundary.regions.as_ref(),
+    };
+    let names = regions.map_or(&[][..], |r| &r.names);
     let (fidelity, distortion) = watch.time("fidelity", || {
-        let asked = &problem.importance;
+        let asked = &importance.cells;
         (
             fidelity(complex, asked, &last.positions, problem.fidelity, names, &importance.region_of_cell),
             distortion(complex, &last.positions),
@@ -358,7 +385,11 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
         fidelity,
         distortion,
         seconds: watch.seconds(),
-        importance: domain.importance.at_vertices(boundary),
+        importance: match &domain.picture {
+            Some(_) => binding.of_nodes(&importance.nodes),
+            None => domain.importance.at_vertices(boundary),
+        },
+        boundary: domain.boundary.clone(),
     })
 }
 

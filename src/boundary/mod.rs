@@ -103,6 +103,18 @@ impl Boundary {
         Self { name: name.into(), positions, triangles, ..Self::default() }
     }
 
+    /// A boundary from bare triangles with one texture coordinate, `(0, 0)` upper left, for each vertex.
+    pub(crate) fn textured(name: &str, positions: Vec<DVec3>, triangles: Vec<[u32; 3]>, uvs: Vec<Vec2>) -> Self {
+        let mut boundary = Self::from_triangles(name, positions, triangles);
+        for (k, triangle) in (0_u32..).zip(&boundary.triangles) {
+            boundary.source.polygons.push(triangle);
+            boundary.source.triangle_corners.push([3 * k, 3 * k + 1, 3 * k + 2]);
+        }
+        boundary.source.corner_uvs = boundary.source.polygons.corners.clone();
+        boundary.source.uvs = uvs;
+        boundary
+    }
+
     /// `[vertices]` texture coordinates: the first one used by each vertex, `None` where it has none.
     ///
     /// `(0, 0)` is the upper left corner of the image and v grows downwards, as in glTF.

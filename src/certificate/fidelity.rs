@@ -3,9 +3,9 @@
 use glam::{DMat3, DVec3, Vec3A};
 use rayon::prelude::*;
 
-use crate::voxel::{Complex, KUHN};
+use crate::voxel::{Complex, Dimension};
 
-/// The size error of a state. Per element `s = (det F)^(1/3)`, `e = max(s/f, f/s) − 1`; elements have equal rest volume.
+/// The size error of a state. Per element `s = (det F)^(1/d)`, `e = max(s/f, f/s) − 1`; elements have equal rest volume.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Fidelity {
     /// μ it was solved with.
@@ -20,7 +20,8 @@ pub struct Fidelity {
     pub regions: Vec<RegionFidelity>,
 }
 
-/// Asked and achieved mean size of one region: cube root of the mean volume ratio over its elements.
+/// Asked and achieved mean size of one region: cube root (in the plane square root) of the mean volume (area) ratio over
+/// its elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionFidelity {
     /// The region's name.
@@ -45,25 +46,26 @@ pub struct Distortion {
 /// Cells per parallel task.
 const CELLS_PER_TASK: usize = 512;
 
-/// `[elements]` volume ratio det F of a state.
+/// `[elements]` volume ratio det F of a state, in the plane the ratio of areas.
 pub fn volume_ratios(complex: &Complex, positions: &[Vec3A]) -> Vec<f32> {
     per_element(complex, positions, |f| f.determinant() as f32)
 }
 
 fn per_element<T: Send>(complex: &Complex, positions: &[Vec3A], value: impl Fn(DMat3) -> T + Sync) -> Vec<T> {
-    let value = &value;
+    let (value, elements) = (&value, complex.dimension.elements());
     complex
         .corners
         .par_iter()
         .with_min_len(CELLS_PER_TASK)
         .flat_map_iter(|corners| {
             let at = corners.map(|c| positions[c as usize].as_dvec3());
-            KUHN.into_iter().map(move |[a, b, c, d]| {
-                // At rest b − a, c − b, d − c are axes up to order and sign, so F is put together from them.
+            elements.iter().map(move |&[a, b, c, d]| {
+                // At rest b − a, c − b, d − c are axes up to order and sign, so F is put together from them. In the plane
+                // the third axis keeps its length.
                 let mut f = DMat3::IDENTITY;
                 let mut path = [a, b, c, d];
                 path.sort_unstable_by_key(|k| k.count_ones());
-                for step in path.windows(2) {
+                for step in path.windows(2).filter(|step| step[0] != step[1]) {
                     *f.col_mut((step[1] ^ step[0]).trailing_zeros() as usize) = at[step[1]] - at[step[0]];
                 }
                 value(f)
@@ -82,21 +84,23 @@ pub fn fidelity(
     region_of_cell: &[u32],
 ) -> Fidelity {
     let volumes = volume_ratios(complex, positions);
+    let (dimension, per_cell) = (complex.dimension, complex.dimension.elements().len());
     let mut errors: Vec<f64> = volumes
         .par_iter()
         .enumerate()
-        .with_min_len(6 * CELLS_PER_TASK)
+        .with_min_len(per_cell * CELLS_PER_TASK)
         .map(|(t, &volume)| {
-            let (s, f) = (f64::from(volume.max(0.0)).cbrt(), f64::from(asked[t / 6]));
+            let (s, f) = (dimension.size(f64::from(volume.max(0.0))), f64::from(asked[t / per_cell]));
             if s > 0.0 { (s / f).max(f / s) - 1.0 } else { f64::INFINITY }
         })
         .collect();
     let mut sums = vec![[0.0_f64; 3]; names.len()];
     for (cell, &region) in region_of_cell.iter().enumerate() {
         if let Some(sum) = sums.get_mut(region as usize) {
-            sum[0] += 6.0;
-            sum[1] += 6.0 * f64::from(asked[cell]).powi(3);
-            sum[2] += volumes[6 * cell..6 * cell + 6].iter().map(|&v| f64::from(v)).sum::<f64>();
+            let elements = per_cell * cell..per_cell * (cell + 1);
+            sum[0] += per_cell as f64;
+            sum[1] += per_cell as f64 * f64::from(dimension.measure(asked[cell]));
+            sum[2] += volumes[elements].iter().map(|&v| f64::from(v)).sum::<f64>();
         }
     }
     let regions = names
@@ -105,8 +109,8 @@ pub fn fidelity(
         .filter(|(_, s)| s[0] > 0.0)
         .map(|(name, s)| RegionFidelity {
             name: name.clone(),
-            asked: (s[1] / s[0]).cbrt(),
-            achieved: (s[2] / s[0]).cbrt(),
+            asked: dimension.size(s[1] / s[0]),
+            achieved: dimension.size(s[2] / s[0]),
         })
         .collect();
     let [median, p95, max] = quantiles(&mut errors, [0.5, 0.95, 1.0]);
@@ -116,7 +120,11 @@ pub fn fidelity(
 /// Conformal distortion of a state.
 pub fn distortion(complex: &Complex, positions: &[Vec3A]) -> Distortion {
     let mut ratios = per_element(complex, positions, |f| {
-        let [low, high] = extreme_eigenvalues(f.transpose() * f);
+        let square = f.transpose() * f;
+        let [low, high] = match complex.dimension {
+            Dimension::Two => flat_eigenvalues(square),
+            Dimension::Three => extreme_eigenvalues(square),
+        };
         if low > 0.0 { (high / low).sqrt() } else { f64::INFINITY }
     });
     let [median, p95, p99] = quantiles(&mut ratios, [0.5, 0.95, 0.99]);
@@ -126,6 +134,13 @@ pub fn distortion(complex: &Complex, positions: &[Vec3A]) -> Distortion {
 fn quantiles(values: &mut [f64], at: [f64; 3]) -> [f64; 3] {
     values.par_sort_unstable_by(f64::total_cmp);
     at.map(|q| values.get(((values.len().max(1) - 1) as f64 * q).round() as usize).copied().unwrap_or(0.0))
+}
+
+/// Eigenvalues of the upper left 2 × 2 block of a symmetric matrix, least first.
+fn flat_eigenvalues(m: DMat3) -> [f64; 2] {
+    let (mean, half) = ((m.x_axis.x + m.y_axis.y) / 2.0, (m.x_axis.x - m.y_axis.y) / 2.0);
+    let radius = half.hypot(m.x_axis.y);
+    [mean - radius, mean + radius]
 }
 
 /// Least and largest eigenvalue of a symmetric matrix (Smith 1961).

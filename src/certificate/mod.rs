@@ -15,7 +15,7 @@ mod surface;
 mod tree;
 
 pub use fidelity::{Distortion, Fidelity, RegionFidelity, distortion, fidelity, volume_ratios};
-pub use predicates::{Triangle, collinear, orientation, triangles_cross};
+pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};
 pub use surface::Surface;
 pub use tree::{Bounds, Tree};
 
@@ -24,7 +24,7 @@ use rayon::prelude::*;
 
 use crate::{
     collision::Shell,
-    voxel::{Complex, KUHN},
+    voxel::{Complex, Dimension, KUHN},
 };
 
 /// What the check of one state found. Only [`certify`] makes one.
@@ -44,7 +44,7 @@ impl Certificate {
         self.inverted == 0 && self.crossings == 0 && self.surface_crossings == 0 && self.enclosed == 0
     }
 
-    /// Elements that are not positively oriented.
+    /// Elements that are not positively oriented, those of a flat written surface included.
     pub fn inverted(&self) -> usize {
         self.inverted
     }
@@ -59,7 +59,7 @@ impl Certificate {
         self.surface_crossings
     }
 
-    /// Bodies that lie inside another body without touching its skin.
+    /// Solids that lie inside another one without crossing its skin.
     pub fn enclosed(&self) -> usize {
         self.enclosed
     }
@@ -81,9 +81,13 @@ const CELLS_PER_TASK: usize = 512;
 /// Checks a state: all elements, and all pairs of faces of the given shells (the first is the complex's skin).
 pub fn certify(complex: &Complex, shells: &mut [Shell], positions: &[Vec3A]) -> Certificate {
     let ((inverted, least, worst_cell), counts): (_, Vec<Vec<(u32, u32)>>) = rayon::join(
-        || elements(complex, positions),
+        || match complex.dimension {
+            Dimension::Two => flat_elements(complex, positions),
+            Dimension::Three => elements(complex, positions),
+        },
         || shells.par_iter_mut().map(|s| s.crossings(positions)).collect(),
     );
+    let inverted = inverted + shells.iter().map(|s| s.inverted(positions).len()).sum::<usize>();
     let crossing_at = shells.iter().zip(&counts).find_map(|(shell, pairs)| {
         let &(triangle, _) = pairs.first()?;
         Some(shell.nodes_of_triangle(triangle))
@@ -100,7 +104,7 @@ pub fn certify(complex: &Complex, shells: &mut [Shell], positions: &[Vec3A]) -> 
     Certificate {
         inverted,
         crossings: counts.first().map_or(0, Vec::len),
-        enclosed: enclosed_bodies(complex, positions).len(),
+        enclosed: enclosed_solids(complex, positions).len(),
         surface_crossings: counts.iter().skip(1).map(Vec::len).sum(),
         min_volume_ratio: least,
         worst,
@@ -147,49 +151,90 @@ fn elements(complex: &Complex, positions: &[Vec3A]) -> (usize, f64, Option<usize
         )
 }
 
-/// Bodies that lie inside another one: one node of each is looked at, which tells for all of it as long as no
-/// skins cross.
+/// The same in the plane, where the sign of every element is taken from the exact predicate.
+fn flat_elements(complex: &Complex, positions: &[Vec3A]) -> (usize, f64, Option<usize>) {
+    let dimension = complex.dimension;
+    let mut inverted = 0;
+    let mut least = (f64::INFINITY, None);
+    for (cell, corners) in complex.corners.iter().enumerate() {
+        for element in dimension.elements() {
+            let at = element.map(|c| positions[corners[c] as usize].as_dvec3());
+            let area = (at[1] - at[0]).truncate().perp_dot((at[2] - at[0]).truncate());
+            inverted += usize::from(!area.is_finite() || !is_positive(dimension, at));
+            if area < least.0 {
+                least = (area, Some(cell));
+            }
+        }
+    }
+    (inverted, least.0, least.1)
+}
+
+/// Solids that lie inside another one: one point of each is looked at, which tells for all of it as long as no skins
+/// cross. Parts that hang together by nodes or edges alone are solids of their own.
 ///
-/// The winding number of a closed skin around a point off it is a whole number; summed as solid angles (van Oosterom and
+/// The winding number of a closed skin around a point off it is a whole number; summed as (solid) angles (van Oosterom and
 /// Strackee 1983) it comes out within far less than the half that would be needed to mistake it.
-pub(crate) fn enclosed_bodies(complex: &Complex, positions: &[Vec3A]) -> Vec<u32> {
-    if complex.bodies < 2 {
+pub(crate) fn enclosed_solids(complex: &Complex, positions: &[Vec3A]) -> Vec<u32> {
+    if complex.solids < 2 {
         return Vec::new();
     }
-    let bodies = complex.bodies as usize;
-    let mut bounds = vec![Bounds::EMPTY; bodies];
-    let mut witness = vec![u32::MAX; bodies];
-    for (i, &body) in complex.body.iter().enumerate() {
-        let b = &mut bounds[body as usize];
-        *b = Bounds { low: b.low.min(positions[i]), high: b.high.max(positions[i]) };
-        witness[body as usize] = witness[body as usize].min(i as u32);
+    let solids = complex.solids as usize;
+    let mut bounds = vec![Bounds::EMPTY; solids];
+    let mut witness = vec![None; solids];
+    for (corners, &solid) in complex.corners.iter().zip(&complex.solid) {
+        let at = corners.map(|c| positions[c as usize]);
+        let b = &mut bounds[solid as usize];
+        *b = at.iter().fold(*b, |b, &p| Bounds { low: b.low.min(p), high: b.high.max(p) });
+        // The middle of an element: inside, and on no skin.
+        let element = complex.dimension.elements()[0].map(|c| at[c].as_dvec3());
+        let middle = match complex.dimension {
+            Dimension::Two => (element[0] + element[1] + element[2]) / 3.0,
+            Dimension::Three => element.iter().sum::<DVec3>() / 4.0,
+        };
+        witness[solid as usize].get_or_insert(middle);
     }
-    let mut faces: Vec<Vec<[u32; 3]>> = vec![Vec::new(); bodies];
-    for &face in &complex.faces {
-        faces[complex.body[face[0] as usize] as usize].push(face);
+    let mut faces: Vec<Vec<[u32; 3]>> = vec![Vec::new(); solids];
+    for (&face, &cell) in complex.faces.iter().zip(&complex.cell_of_face) {
+        faces[complex.solid[cell as usize] as usize].push(face);
     }
-    (0..bodies)
+    (0..solids)
         .into_par_iter()
         .filter(|&a| {
-            let p = positions[witness[a] as usize];
-            (0..bodies).any(|b| {
-                a != b && bounds[b].meets(&Bounds { low: p, high: p }) && winding(&faces[b], positions, p).abs() > 0.5
+            let Some(p) = witness[a] else { return false };
+            let at = Bounds { low: p.as_vec3a(), high: p.as_vec3a() };
+            (0..solids).any(|b| {
+                a != b && bounds[b].meets(&at) && winding(complex.dimension, &faces[b], positions, p).abs() > 0.5
             })
         })
         .map(|a| a as u32)
         .collect()
 }
 
-/// Winding number of a closed surface around a point.
-fn winding(faces: &[[u32; 3]], positions: &[Vec3A], p: Vec3A) -> f64 {
-    let angle: f64 = faces
-        .iter()
-        .map(|face| {
-            let [a, b, c] = face.map(|v| (positions[v as usize] - p).as_dvec3());
-            let (la, lb, lc) = (a.length(), b.length(), c.length());
-            let volume = a.dot(b.cross(c));
-            2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
-        })
-        .sum();
-    angle / (4.0 * std::f64::consts::PI)
+/// Winding number of a closed surface, in the plane of closed lines, around a point.
+fn winding(dimension: Dimension, faces: &[[u32; 3]], positions: &[Vec3A], p: DVec3) -> f64 {
+    let corners = |face: &[u32; 3]| face.map(|v| positions[v as usize].as_dvec3() - p);
+    match dimension {
+        Dimension::Two => {
+            let angle: f64 = faces
+                .iter()
+                .map(|face| {
+                    let [a, b, _] = corners(face).map(DVec3::truncate);
+                    a.perp_dot(b).atan2(a.dot(b))
+                })
+                .sum();
+            angle / std::f64::consts::TAU
+        }
+        Dimension::Three => {
+            let angle: f64 = faces
+                .iter()
+                .map(|face| {
+                    let [a, b, c] = corners(face);
+                    let (la, lb, lc) = (a.length(), b.length(), c.length());
+                    let volume = a.dot(b.cross(c));
+                    2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+                })
+                .sum();
+            angle / (4.0 * std::f64::consts::PI)
+        }
+    }
 }

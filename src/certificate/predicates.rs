@@ -6,6 +6,8 @@
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use crate::voxel::Dimension;
+
 /// A triangle as positions and as the identities of its corners; equal identities mean the same point.
 #[derive(Debug, Clone, Copy)]
 pub struct Triangle {
@@ -38,6 +40,38 @@ pub fn orientation(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     }
     // `robust` looks from the other side.
     sign(-orient3d(coord(a), coord(b), coord(c), coord(d)))
+}
+
+/// Whether an element is positively oriented; in the plane its first three corners are meant. Exact.
+pub fn is_positive(dimension: Dimension, [a, b, c, d]: [DVec3; 4]) -> bool {
+    match dimension {
+        Dimension::Two => turn(flat(a, 2), flat(b, 2), flat(c, 2)) > 0,
+        Dimension::Three => orientation(a, b, c, d) > 0,
+    }
+}
+
+/// Whether two segments of the plane z = 0 have a common point outside what they share by identity. Exact.
+///
+/// A segment is written as a triangle whose third corner is the second once more. Segments that share both ends are the
+/// same one twice: they cross. One without length crosses nothing.
+pub fn segments_cross(s: &Triangle, t: &Triangle) -> bool {
+    let ([a, b], [c, d]) = ([s.at[0], s.at[1]].map(|p| flat(p, 2)), [t.at[0], t.at[1]].map(|p| flat(p, 2)));
+    let point = |p: Coord<f64>, q: Coord<f64>| p.x == q.x && p.y == q.y;
+    if point(a, b) || point(c, d) {
+        return false;
+    }
+    let (of_s, of_t) = ([s.id[0], s.id[1]], [t.id[0], t.id[1]]);
+    match (of_s.iter().position(|id| of_t.contains(id)), of_s.iter().filter(|id| of_t.contains(id)).count()) {
+        (None, _) => segments_meet(a, b, c, d),
+        (Some(_), 2) => true,
+        (Some(i), _) => {
+            // From the common point v they meet again only where they run along each other.
+            let j = usize::from(of_t[1] == of_s[i]);
+            let (v, p, q) = ([a, b][i], [a, b][1 - i], [c, d][1 - j]);
+            let ahead = if p.x == v.x { (p.y > v.y) == (q.y > v.y) } else { (p.x > v.x) == (q.x > v.x) };
+            turn(v, p, q) == 0 && ahead
+        }
+    }
 }
 
 fn sign(x: f64) -> i8 {
@@ -207,6 +241,30 @@ mod tests {
         let up = f64::from_bits(1.0_f64.to_bits() + 1);
         assert_eq!(orientation(e(1., 1., 1.), e(2., 1., 1.), e(1., 2., 1.), e(1.3, 1.3, up)), 1);
         assert_eq!(orientation(e(1., 1., 1.), e(2., 1., 1.), e(1., 2., 1.), e(1.3, 1.3, 1.)), 0);
+    }
+
+    #[test]
+    fn segments_of_the_plane() {
+        let segment = |a: [f64; 2], b: [f64; 2], id: [u32; 2]| {
+            triangle([[a[0], a[1], 0.0], [b[0], b[1], 0.0], [b[0], b[1], 0.0]], [id[0], id[1], id[1]])
+        };
+        let base = segment([0., 0.], [4., 0.], [0, 1]);
+        for (other, expected) in [
+            (segment([1., -1.], [1., 1.], [2, 3]), true),
+            (segment([1., 0.], [1., 1.], [2, 3]), true),
+            (segment([1., 1.], [3., 1.], [2, 3]), false),
+            (segment([3., 0.], [6., 0.], [2, 3]), true),
+            (segment([5., 0.], [6., 0.], [2, 3]), false),
+            (segment([0., 0.], [0., 1.], [0, 3]), false),
+            (segment([0., 0.], [-1., 0.], [0, 3]), false),
+            (segment([0., 0.], [1., 0.], [0, 3]), true),
+            (segment([9., 0.], [4., 0.], [3, 1]), false),
+            (segment([1., 0.], [4., 0.], [3, 1]), true),
+            (segment([4., 0.], [0., 0.], [1, 0]), true),
+        ] {
+            assert_eq!(segments_cross(&base, &other), expected, "{other:?}");
+            assert_eq!(segments_cross(&other, &base), expected, "{other:?}");
+        }
     }
 
     #[test]

@@ -1,10 +1,12 @@
-//! Crossings of a triangle surface with itself: boxes first, exact predicates last.
+//! Crossings of a triangle surface with itself, in the plane of lines: boxes first, exact predicates last.
 
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
+use crate::voxel::Dimension;
+
 use super::{
-    predicates::{Triangle, triangles_cross},
+    predicates::{Triangle, segments_cross, triangles_cross},
     tree::{Bounds, Tree},
 };
 
@@ -60,9 +62,11 @@ impl Plane {
     }
 }
 
-/// A triangle surface to be checked in many states.
+/// A triangle surface, or lines of the plane z = 0, to be checked in many states.
 #[derive(Debug, Clone)]
 pub struct Surface {
+    /// Whether triangles or segments are meant; a segment is a triangle whose third corner is the second once more.
+    dimension: Dimension,
     /// `[triangles]` corner indices into the state's positions.
     pub triangles: Vec<[u32; 3]>,
     /// `[triangles]` identities of the corners: equal where corners are the same point (welded).
@@ -77,11 +81,16 @@ impl Surface {
         Self::welded(triangles, identities, rest)
     }
 
+    /// Segments of the plane.
+    pub fn flat(segments: Vec<[u32; 3]>, rest: &[Vec3A]) -> Self {
+        Self { dimension: Dimension::Two, ..Self::new(segments, rest) }
+    }
+
     /// A surface with corner identities of its own (a soup whose equal points are one).
     pub fn welded(triangles: Vec<[u32; 3]>, identities: Vec<[u32; 3]>, rest: &[Vec3A]) -> Self {
         let centres: Vec<Vec3A> =
             triangles.iter().map(|t| t.map(|v| rest[v as usize]).iter().sum::<Vec3A>() / 3.0).collect();
-        Self { tree: Tree::new(&centres), triangles, identities }
+        Self { dimension: Dimension::Three, tree: Tree::new(&centres), triangles, identities }
     }
 
     /// Pairs of triangles whose boxes meet in any blend of the states `a` and `b`.
@@ -102,10 +111,13 @@ impl Surface {
 
     /// Of `pairs`, those that cross in a state, in the order given. Exact.
     pub fn crossing_pairs(&self, pairs: &[(u32, u32)], positions: &[Vec3A]) -> Vec<(u32, u32)> {
-        let crosses = |s: u32, t: u32| triangles_cross(&self.triangle(s, positions), &self.triangle(t, positions));
+        let crosses = |s: u32, t: u32| self.cross(&self.triangle(s, positions), &self.triangle(t, positions));
         let filtered = |keep: &(dyn Fn(u32, u32) -> bool + Sync)| {
             pairs.par_iter().with_min_len(PAIRS_PER_TASK).filter(|&&(s, t)| keep(s, t)).copied().collect()
         };
+        if self.dimension == Dimension::Two {
+            return filtered(&crosses);
+        }
         if pairs.len() < self.triangles.len() {
             let plane = |t: u32| Plane::of(self.triangles[t as usize].map(|v| positions[v as usize]));
             return filtered(&|s, t| self.may_cross(s, t, &plane(s), &plane(t)) && crosses(s, t));
@@ -118,6 +130,13 @@ impl Surface {
             .map(|t| Plane::of(t.map(|v| positions[v as usize])))
             .collect();
         filtered(&|s, t| self.may_cross(s, t, &planes[s as usize], &planes[t as usize]) && crosses(s, t))
+    }
+
+    fn cross(&self, s: &Triangle, t: &Triangle) -> bool {
+        match self.dimension {
+            Dimension::Two => segments_cross(s, t),
+            Dimension::Three => triangles_cross(s, t),
+        }
     }
 
     /// False only where boxes or the plane of one triangle prove two triangles apart but for what they share.
@@ -149,7 +168,7 @@ impl Surface {
         (0..n)
             .into_par_iter()
             .flat_map_iter(|s| {
-                (s + 1..n).filter(move |&t| triangles_cross(&triangle(s), &triangle(t))).map(move |t| (s, t))
+                (s + 1..n).filter(move |&t| self.cross(&triangle(s), &triangle(t))).map(move |t| (s, t))
             })
             .collect()
     }

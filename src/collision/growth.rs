@@ -95,6 +95,17 @@ impl Growth {
         self.motion = f32::INFINITY;
     }
 
+    /// Whether λ = 1 has settled and is not kept yet.
+    pub fn at_end(&self) -> bool {
+        self.step + 1 == self.steps.len() && self.settled()
+    }
+
+    /// Settles once more at this λ, for something was changed.
+    pub fn again(&mut self) {
+        self.iteration = 0;
+        self.motion = f32::INFINITY;
+    }
+
     /// Settles for less at λ = 1.
     pub fn hurry(&mut self) {
         self.patience = HURRIED_ITERATIONS;

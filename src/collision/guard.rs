@@ -11,10 +11,10 @@ use rayon::prelude::*;
 
 use super::Shell;
 use crate::{
-    certificate::{enclosed_bodies, orientation},
+    certificate::{enclosed_solids, is_positive},
     edge::CHUNK,
     film::blend,
-    voxel::{Complex, KUHN},
+    voxel::{Complex, Dimension},
 };
 
 /// Elements may not shrink further once below this part of their target volume. Zero would let slivers through that the
@@ -153,10 +153,10 @@ impl Step<'_> {
                 if part < 1.0 { Cow::Owned(blend(self.current, proposed, part)) } else { Cow::Borrowed(proposed) };
             marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
             // A small body may be inside another after one step without having been seen to cross its skin.
-            let enclosed = enclosed_bodies(self.complex, &state);
+            let enclosed = enclosed_solids(self.complex, &state);
             if !enclosed.is_empty() {
-                let nodes = 0..self.complex.nodes() as u32;
-                marked.extend(nodes.filter(|&i| enclosed.contains(&self.complex.body[i as usize])));
+                let cells = self.complex.corners.iter().zip(&self.complex.solid);
+                marked.extend(cells.filter(|(_, solid)| enclosed.contains(solid)).flat_map(|(corners, _)| *corners));
             }
             for (shell, near) in self.shells.iter().zip(self.near) {
                 shell.mark_crossings(near, &state, moved, &mut marked);
@@ -174,6 +174,7 @@ fn bad_cells(
     proposed: &[Vec3A],
     moved: Option<&[bool]>,
 ) -> Vec<u32> {
+    let dimension = complex.dimension;
     complex
         .corners
         .par_chunks(CELLS_PER_TASK)
@@ -184,16 +185,16 @@ fn bad_cells(
                 if moved.is_some_and(|m| !corners.iter().any(|&c| m[c as usize])) {
                     continue;
                 }
-                let floor = VOLUME_FLOOR * size[chunk * CELLS_PER_TASK + k].powi(3);
+                let floor = VOLUME_FLOOR * dimension.measure(size[chunk * CELLS_PER_TASK + k]);
                 let at = corners.map(|c| proposed[c as usize]);
-                for element in KUHN {
-                    let volume = determinant(element.map(|c| at[c]));
+                for element in dimension.elements() {
+                    let volume = determinant(dimension, element.map(|c| at[c]));
                     if volume > floor {
                         continue;
                     }
                     let nodes = element.map(|c| corners[c]);
-                    let positive = positive(element.map(|c| at[c]));
-                    let before = determinant(nodes.map(|c| current[c as usize]));
+                    let positive = is_positive(dimension, element.map(|c| at[c].as_dvec3()));
+                    let before = determinant(dimension, nodes.map(|c| current[c as usize]));
                     if !positive || volume < before {
                         bad.extend(nodes);
                     }
@@ -204,15 +205,14 @@ fn bad_cells(
         .collect()
 }
 
-/// `det[b − a, c − a, d − a]` in f32: six times the volume.
+/// `det[b − a, c − a, d − a]` in f32: six times the volume; in the plane `det[b − a, c − a]`, twice the area.
 #[inline]
-pub(crate) fn determinant([a, b, c, d]: [Vec3A; 4]) -> f32 {
-    (b - a).dot((c - a).cross(d - a))
-}
-
-/// Exact.
-fn positive([a, b, c, d]: [Vec3A; 4]) -> bool {
-    orientation(a.as_dvec3(), b.as_dvec3(), c.as_dvec3(), d.as_dvec3()) > 0
+pub(crate) fn determinant(dimension: Dimension, [a, b, c, d]: [Vec3A; 4]) -> f32 {
+    let (u, v) = (b - a, c - a);
+    match dimension {
+        Dimension::Two => u.x * v.y - u.y * v.x,
+        Dimension::Three => u.dot(v.cross(d - a)),
+    }
 }
 
 /// Shortens steps longer than `most`, per node, in cells.

@@ -4,17 +4,31 @@
 //! the last one), `s_c = 1 + λ (f_c − 1)` the size asked for, and the target
 //! `A_c = (1 − μ) s_c R_c + μ P_c` with `P_c` the matrix nearest to `F_c` whose determinant is `s_c³`.
 
-use glam::{Mat3A, Quat, Vec3A};
+use glam::{Mat3A, Quat, Vec2, Vec3A};
+
+use crate::voxel::Dimension;
 
 /// `b_k = Σ (X_k − X_o)` over the cell's edges at corner k: gathers `A_c Δ_e` to corners and differences to `F_c`.
-pub(super) const CORNER: [Vec3A; 8] = corner_vectors();
+const CORNER: [Vec3A; 8] = corner_vectors(8);
 
-const fn corner_vectors() -> [Vec3A; 8] {
+/// The same for the five edges of a flat cell.
+const FLAT_CORNER: [Vec3A; 8] = corner_vectors(4);
+
+/// `b_k` of a dimension's cells.
+#[inline]
+pub(super) const fn corner_gather(dimension: Dimension) -> &'static [Vec3A; 8] {
+    match dimension {
+        Dimension::Two => &FLAT_CORNER,
+        Dimension::Three => &CORNER,
+    }
+}
+
+const fn corner_vectors(corners: usize) -> [Vec3A; 8] {
     let mut sums = [[0_i32; 3]; 8];
     let mut k = 0;
-    while k < 8 {
+    while k < corners {
         let mut d = 1;
-        while d < 8 {
+        while d < corners {
             if k & d == 0 {
                 let mut axis = 0;
                 while axis < 3 {
@@ -119,10 +133,97 @@ pub fn target(corners: [Vec3A; 8], q: Quat, size: f32, fidelity: f32) -> (Mat3A,
     (shape * (1.0 - fidelity) + volume * fidelity, q)
 }
 
+/// The target of one flat cell; its rotation is found at once and needs no start.
+///
+/// `F = (Σ_e Δ'_e Δ_eᵀ)(Σ_e Δ_e Δ_eᵀ)⁻¹` over five edges, where `Σ Δ Δᵀ = 2 I + J` with inverse `(I − J / 4) / 2`. A map
+/// of the plane is the sum of a conformal part `(a, b)` and an anticonformal one `(c, d)`, and its determinant is
+/// `|conformal|² − |anticonformal|²`.
+#[inline]
+pub fn flat_target(corners: [Vec3A; 8], size: f32, fidelity: f32) -> Mat3A {
+    let (mut x, mut y) = (Vec3A::ZERO, Vec3A::ZERO);
+    for (p, b) in corners.into_iter().zip(FLAT_CORNER).take(4) {
+        x += p * b.x;
+        y += p * b.y;
+    }
+    let mean = (x + y) * 0.25;
+    let (x, y) = ((x - mean) * 0.5, (y - mean) * 0.5);
+    let conformal = Vec2::new(x.x + y.y, x.y - y.x) * 0.5;
+    let anticonformal = Vec2::new(x.x - y.y, x.y + y.x) * 0.5;
+    let shape = conformal.try_normalize().unwrap_or(Vec2::X) * size;
+    let kappa = flat_kappa(conformal.length_squared(), anticonformal.length_squared(), size * size);
+    let conformal = shape * (1.0 - fidelity) + conformal * (fidelity / (1.0 - kappa));
+    let anticonformal = anticonformal * (fidelity / (1.0 + kappa));
+    Mat3A::from_cols(
+        Vec3A::new(conformal.x + anticonformal.x, conformal.y + anticonformal.y, 0.0),
+        Vec3A::new(anticonformal.y - conformal.y, conformal.x - anticonformal.x, 0.0),
+        Vec3A::ZERO,
+    )
+}
+
+/// Newton steps for κ, kept within the bracket: more than rounding needs.
+const KAPPA_STEPS: usize = 8;
+
+/// κ of the nearest map with determinant `area` > 0. `P = F + κ cof(P)` divides the conformal part (square `conformal`)
+/// by 1 − κ and the anticonformal one by 1 + κ; `conformal / (1 − κ)² − anticonformal / (1 + κ)² = area` rises with κ in
+/// (−1, 1) and has one root there.
+#[inline]
+fn flat_kappa(conformal: f32, anticonformal: f32, area: f32) -> f32 {
+    // Kept off the ends, where the parts would be divided by zero: sizes change by at most a factor of ten at a time.
+    const END: f32 = 0.9;
+    let (mut low, mut high) = (-END, END);
+    // Without the anticonformal part the root is exact.
+    let mut kappa = (1.0 - (conformal / area).sqrt()).clamp(low, high);
+    for _ in 0..KAPPA_STEPS {
+        let (a, c) = (1.0 / (1.0 - kappa), 1.0 / (1.0 + kappa));
+        let error = conformal * a * a - anticonformal * c * c - area;
+        if error.abs() <= 1.0e-6 * area {
+            break;
+        }
+        if error > 0.0 {
+            high = kappa;
+        } else {
+            low = kappa;
+        }
+        let slope = 2.0 * (conformal * a * a * a + anticonformal * c * c * c);
+        let next = kappa - error / slope.max(f32::MIN_POSITIVE);
+        kappa = if next > low && next < high { next } else { 0.5 * (low + high) };
+    }
+    kappa
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::voxel::{DIRECTIONS, KUHN};
+
+    #[test]
+    fn a_flat_target_is_the_nearest_map_with_the_asked_area() {
+        let maps = [
+            [[1.2, 0.3], [-0.2, 0.9]],
+            [[1.0, 0.0], [0.0, 1.0]],
+            [[2.0, 0.1], [0.0, 0.2]],
+            [[0.3, -0.9], [1.1, 0.2]],
+        ];
+        for [x, y] in maps {
+            let (x, y) = (Vec3A::new(x[0], x[1], 0.0), Vec3A::new(y[0], y[1], 0.0));
+            let corners = std::array::from_fn(|k| x * (k & 1) as f32 + y * (k >> 1 & 1) as f32);
+            for size in [0.7_f32, 1.0, 1.4] {
+                let p = flat_target(corners, size, 1.0);
+                let det = p.x_axis.x * p.y_axis.y - p.x_axis.y * p.y_axis.x;
+                assert!((det - size * size).abs() < 1e-4, "{x} {y} {size}: {det}");
+                // Nearest: P − F is parallel to the cofactors of P.
+                let cofactor = [Vec3A::new(p.y_axis.y, -p.y_axis.x, 0.0), Vec3A::new(-p.x_axis.y, p.x_axis.x, 0.0)];
+                let off = [p.x_axis - x, p.y_axis - y];
+                let along = (off[0].dot(cofactor[0]) + off[1].dot(cofactor[1]))
+                    / (cofactor[0].length_squared() + cofactor[1].length_squared());
+                for k in 0..2 {
+                    assert!((off[k] - along * cofactor[k]).length() < 1e-3, "{x} {y} {size}");
+                }
+                let shape = flat_target(corners, size, 0.0);
+                assert!((shape.x_axis.length() - size).abs() < 1e-5 && shape.x_axis.dot(shape.y_axis).abs() < 1e-5);
+            }
+        }
+    }
 
     fn cell(m: Mat3A) -> [Vec3A; 8] {
         std::array::from_fn(|k| m * Vec3A::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2 & 1) as f32))

@@ -13,6 +13,7 @@
 //! One multigrid cycle is enough for the global step where nothing touches; with contacts, which the cycle does not
 //! know, a few conjugate gradient steps are taken. All loops gather or sum in fixed chunks: same bits for any threads.
 
+pub mod areas;
 pub mod contact;
 pub mod growth;
 pub mod guard;
@@ -25,7 +26,8 @@ use rayon::prelude::*;
 
 use crate::{
     edge::{CHUNK, Multigrid, Weights, dot, preconditioned},
-    voxel::Complex,
+    importance::cell_importance,
+    voxel::{Complex, Dimension},
 };
 pub use contact::Contacts;
 pub use growth::Growth;
@@ -43,7 +45,7 @@ const STEP_LIMIT: f32 = 0.5;
 /// The constant part of the collision optimization: what depends on complex and importance alone.
 #[derive(Debug, Clone)]
 pub struct Problem {
-    /// `[cells]` f_c, mean of its nodes.
+    /// `[cells]` f_c.
     pub importance: Vec<f32>,
     /// μ in 0..=1.
     pub fidelity: f32,
@@ -54,8 +56,13 @@ pub struct Problem {
 impl Problem {
     /// Prepares for a complex and its `[nodes]` importance.
     pub fn new(complex: &Complex, importance: &[f32], fidelity: f32) -> Self {
+        Self::of_cells(complex, cell_importance(complex, importance), fidelity)
+    }
+
+    /// Prepares for a complex and its `[cells]` importance.
+    pub fn of_cells(complex: &Complex, importance: Vec<f32>, fidelity: f32) -> Self {
         Self {
-            importance: cell_importance(complex, importance),
+            importance,
             fidelity,
             operator: Multigrid::new(complex, Weights::Cells),
             boundary_nodes: (0..complex.nodes() as u32).filter(|&i| complex.on_boundary[i as usize]).collect(),
@@ -66,11 +73,6 @@ impl Problem {
     pub fn set_importance(&mut self, complex: &Complex, importance: &[f32]) {
         self.importance = cell_importance(complex, importance);
     }
-}
-
-/// `[cells]` mean importance of the eight nodes.
-pub fn cell_importance(complex: &Complex, importance: &[f32]) -> Vec<f32> {
-    complex.corners.par_iter().map(|c| c.iter().map(|&i| importance[i as usize]).sum::<f32>() / 8.0).collect()
 }
 
 /// What is asked for at one λ.
@@ -110,6 +112,9 @@ pub fn local_step(
         .zip(&asked.size)
         .with_min_len(CHUNK / 4)
         .map(|((q, corners), &size)| {
+            if complex.dimension == Dimension::Two {
+                return local::flat_target(corners.map(|c| positions[c as usize]), size, problem.fidelity);
+            }
             let (target, turned) = local::target(corners.map(|c| positions[c as usize]), *q, size, problem.fidelity);
             *q = turned;
             target
@@ -131,13 +136,14 @@ pub fn global_step(
     targets: &[Mat3A],
     contacts: &Contacts,
 ) -> (Vec<Vec3A>, f64) {
+    let corner_gather = local::corner_gather(complex.dimension);
     let mut force = Vec::new();
     problem.operator.apply(positions, &mut force);
     force.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(i, force)| {
         let mut sum = -*force;
         for (corner, &cell) in complex.cells_around[i].iter().enumerate() {
             if cell != u32::MAX {
-                sum += targets[cell as usize] * local::CORNER[corner];
+                sum += targets[cell as usize] * corner_gather[corner];
             }
         }
         for c in contacts.of(i) {

@@ -4,14 +4,14 @@ use bevy::prelude::*;
 use glam::{Mat3A, Quat, Vec3A};
 
 use super::{
-    Asked, Contacts, Growth, Guarded, Problem, Shell, contact_step, global_step, grow, guard_step, local_step,
+    Asked, areas::AreaCorrection, Contacts, Growth, Guarded, Problem, Shell, contact_step, global_step, grow, guard_step, local_step,
 };
 use crate::{
     diagnostics::Stopwatch,
     edge::plugin::LinearSolution,
     importance::plugin::Importance,
     schedule::{Domain, Solve, Stage},
-    voxel::plugin::Lattice,
+    voxel::plugin::{Lattice, PixelShares},
 };
 
 /// What the collision optimization of a domain is about.
@@ -75,7 +75,7 @@ impl Plugin for CollisionPlugin {
                 fit_cells.in_set(Stage::Local),
                 find_contacts.in_set(Stage::Contact),
                 propose.in_set(Stage::Global),
-                accept.in_set(Stage::Guard),
+                (accept, correct_areas).chain().in_set(Stage::Guard),
             ),
         );
     }
@@ -89,7 +89,10 @@ fn start(
     mut watch: ResMut<Stopwatch>,
 ) {
     for (entity, domain, Lattice(complex), importance) in &lattices {
-        let problem = watch.time("grow", || Problem::new(complex, &importance.nodes, domain.settings.fidelity));
+        if let Some(regions) = domain.picture.as_ref().and_then(|picture| picture.regions.as_ref()) {
+            commands.entity(entity).insert(AreaCorrection::new(regions.names.len()));
+        }
+        let problem = watch.time("grow", || Problem::of_cells(complex, importance.cells.clone(), domain.settings.fidelity));
         let (low, high) = problem.importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
         commands.entity(entity).insert((
             CollisionProblem(problem),
@@ -99,6 +102,28 @@ fn start(
             (Sizes::default(), Rotations::default(), Targets::default(), Touching::default(), Proposed::default()),
             (HeldBack::default(), Holds::default(), BoundaryAtRisk::default()),
         ));
+    }
+}
+
+type Corrected<'a> = (
+    &'a Lattice,
+    &'a PixelShares,
+    &'a Warped,
+    &'a mut CollisionProblem,
+    &'a mut Growing,
+    &'a mut AreaCorrection,
+);
+
+/// Regions of a picture that have not their area yet ask for more or less, and λ = 1 settles once more.
+fn correct_areas(mut domains: Query<Corrected>, mut watch: ResMut<Stopwatch>) {
+    for (Lattice(complex), PixelShares(shares), warped, mut problem, mut growing, mut correction) in &mut domains {
+        if !growing.0.done() && growing.0.at_end() {
+            let corrected = watch.time("grow", || correction.correct(complex, shares, &warped.0));
+            if let Some(importance) = corrected {
+                problem.0.importance = importance;
+                growing.0.again();
+            }
+        }
     }
 }
 

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 
 use crate::{
     boundary::{Boundary, Sets},
-    certificate::Surface,
+    certificate::{Surface, is_positive},
     transfer::Binding,
-    voxel::Complex,
+    voxel::{Complex, Dimension},
 };
 
 /// A surface carried by the nodes that must not cross itself: the complex's own skin, or the boundary bound to it.
@@ -29,19 +29,45 @@ pub struct Shell {
     /// Pairs of pieces that crossed at rest, both ways, sorted: an eye in its socket, a spout stuck into a pot. They stay
     /// stuck into each other, and their crossing may slide far.
     inherited_pieces: Vec<(u32, u32)>,
+    /// Triangles of a flat surface, by its vertices: they must stay positively oriented. Empty in space.
+    flat_elements: Vec<[u32; 3]>,
 }
 
 impl Shell {
     /// The boundary faces of the complex.
     pub fn skin(complex: &Complex) -> Self {
+        let faces = complex.faces.clone();
+        Self::sound(match complex.dimension {
+            Dimension::Two => Surface::flat(faces, &complex.rest),
+            Dimension::Three => Surface::new(faces, &complex.rest),
+        })
+    }
+
+    /// A surface of the nodes that does not cross itself at rest.
+    fn sound(surface: Surface) -> Self {
         Self {
-            surface: Surface::new(complex.faces.clone(), &complex.rest),
+            surface,
             binding: None,
             inherited: 0,
             inherited_corners: Vec::new(),
             piece: Vec::new(),
             inherited_pieces: Vec::new(),
+            flat_elements: Vec::new(),
         }
+    }
+
+    /// The flat mesh a picture is drawn on: its outline must not cross itself, its triangles must not turn over.
+    fn flat(boundary: &Boundary, binding: Binding, complex: &Complex) -> Self {
+        let mut directed: Vec<[u32; 2]> =
+            boundary.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        directed.sort_unstable();
+        let outline: Vec<[u32; 3]> = directed
+            .iter()
+            .filter(|&&[a, b]| directed.binary_search(&[b, a]).is_err())
+            .map(|&[a, b]| [a, b, b])
+            .collect();
+        let surface = Surface::flat(outline, &binding.apply_for_check(&complex.rest));
+        Self { binding: Some(binding), flat_elements: boundary.triangles.clone(), ..Self::sound(surface) }
     }
 
     /// The boundary surface B as it will be written.
@@ -49,6 +75,9 @@ impl Shell {
     /// B' is made of flat triangles between moved vertices, while the complex bends between them: that the complex does
     /// not cross itself is not enough where triangles are larger than cells.
     pub fn boundary(boundary: &Boundary, binding: Binding, complex: &Complex) -> Self {
+        if complex.dimension == Dimension::Two {
+            return Self::flat(boundary, binding, complex);
+        }
         let welded = boundary.welded();
         let identities = boundary.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
         let rest = binding.apply_for_check(&complex.rest);
@@ -80,12 +109,12 @@ impl Shell {
         inherited_pieces.sort_unstable();
         inherited_pieces.dedup();
         Self {
-            surface,
             binding: Some(binding),
             inherited: crossing_at_rest,
             inherited_corners,
             piece,
             inherited_pieces,
+            ..Self::sound(surface)
         }
     }
 
@@ -154,10 +183,14 @@ impl Shell {
             vertex_moved.as_ref().is_none_or(|moved| corners.iter().any(|&v| moved[v as usize]))
         };
         let again: Vec<(u32, u32)> = near.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect();
-        if again.is_empty() {
+        if again.is_empty() && self.flat_elements.is_empty() {
             return;
         }
-        let crossing = self.surface.crossing_pairs(&again, &self.positions(nodes));
+        let positions = self.positions(nodes);
+        for t in self.inverted_at(&positions) {
+            marked.extend(self.flat_elements[t as usize].iter().flat_map(|&v| self.nodes_of(v)));
+        }
+        let crossing = self.surface.crossing_pairs(&again, &positions);
         for (s, t) in crossing.into_iter().filter(|&pair| !self.is_inherited(pair)) {
             marked.extend(self.nodes_of_triangle(s));
             marked.extend(self.nodes_of_triangle(t));
@@ -173,6 +206,20 @@ impl Shell {
         let mut pairs = self.surface.crossings(&positions);
         pairs.retain(|&pair| !self.is_inherited(pair));
         pairs
+    }
+
+    /// Triangles of a flat surface that are not positively oriented in a state. Exact.
+    pub fn inverted(&self, nodes: &[Vec3A]) -> Vec<u32> {
+        if self.flat_elements.is_empty() { Vec::new() } else { self.inverted_at(&self.positions(nodes)) }
+    }
+
+    fn inverted_at(&self, positions: &[Vec3A]) -> Vec<u32> {
+        let is_sound = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| positions[v as usize].as_dvec3());
+            is_positive(Dimension::Two, [a, b, c, c])
+        };
+        let elements = self.flat_elements.par_iter().with_min_len(2048).enumerate();
+        elements.filter(|(_, t)| !is_sound(t)).map(|(t, _)| t as u32).collect()
     }
 
     /// The nodes that carry triangle `t`: where a crossing is.

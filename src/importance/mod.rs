@@ -37,7 +37,7 @@ use sphere::Sphere;
 pub use colour::colours;
 pub use layer::{CLAMP_MAX, CLAMP_MIN, IMAGE_RANGE, Layer, Range};
 pub use sphere::falloff;
-pub use spread::Sampling;
+pub use spread::{Sampling, cell_importance, node_importance};
 
 /// A point on the boundary's surface where importance is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +49,7 @@ pub struct Sample {
 }
 
 /// Layers of importance over a base value, read and checked for one boundary.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Stack {
     /// ln of the importance below all layers.
     ln_base: f64,

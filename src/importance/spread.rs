@@ -25,6 +25,20 @@ const MOST_CUTS: u32 = 1024;
 /// percent while single samples do not show.
 const PULL: f32 = 10.0;
 
+/// `[cells]` mean importance of their nodes.
+pub fn cell_importance(complex: &Complex, importance: &[f32]) -> Vec<f32> {
+    complex.corners.par_iter().map(|c| c.iter().map(|&i| importance[i as usize]).sum::<f32>() / 8.0).collect()
+}
+
+/// `[nodes]` mean importance of the cells around.
+pub fn node_importance(complex: &Complex, importance: &[f32]) -> Vec<f32> {
+    let mean = |cells: &[u32; 8]| {
+        let around = || cells.iter().filter(|&&c| c != u32::MAX).map(|&c| importance[c as usize]);
+        around().sum::<f32>() / around().count() as f32
+    };
+    complex.cells_around.par_iter().map(mean).collect()
+}
+
 /// Where the surface was sampled, and on which nodes each sample pulls.
 #[derive(Debug, Clone)]
 pub struct Sampling {

@@ -5,9 +5,11 @@
 //! displacement gives back the input's own digits where nothing moved. And V'' is first refined by one smooth halving of
 //! the lattice ([`Refinement`]), so that a fine surface does not show the lattice it was carried by.
 
+mod flat;
 pub mod plugin;
 mod refine;
 
+pub use flat::flat_boundary;
 pub use refine::Refinement;
 
 use glam::{DVec3, IVec3, Vec3A};
@@ -201,6 +203,13 @@ impl Binding {
                 .map(|v| self.nodes[v].iter().zip(&self.weights[v]).map(|(&i, &w)| w * nodes[i as usize]).sum())
                 .collect()
         })
+    }
+
+    /// `[vertices]` means of a quantity of the complex's nodes, by the weights of each vertex's halved element.
+    pub fn of_nodes(&self, values: &[f32]) -> Vec<f32> {
+        let node = |i: u32| self.refinement.mean(i, values);
+        let vertex = |v: usize| self.nodes[v].iter().zip(&self.weights[v]).map(|(&i, &w)| w * node(i)).sum();
+        (0..self.nodes.len()).into_par_iter().with_min_len(VERTICES_PER_TASK).map(vertex).collect()
     }
 
     /// The complex's nodes that carry a vertex; some come more than once.

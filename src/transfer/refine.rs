@@ -15,7 +15,7 @@
 use glam::Vec3A;
 use rayon::prelude::*;
 
-use crate::voxel::{Complex, opposite};
+use crate::voxel::{Complex, Dimension, opposite};
 
 /// Nodes per parallel task.
 const NODES_PER_TASK: usize = 4096;
@@ -28,6 +28,8 @@ pub struct Refinement {
     /// `[nodes]` index of the edge in each forward slot, `u32::MAX` where there is none.
     edge_of: Vec<[u32; 7]>,
     coarse: usize,
+    /// 2 or 3.
+    axes: usize,
 }
 
 impl Refinement {
@@ -54,7 +56,11 @@ impl Refinement {
                 });
             }
         }
-        Self { middles, edge_of, coarse: complex.nodes() }
+        let axes = match complex.dimension {
+            Dimension::Two => 2,
+            Dimension::Three => 3,
+        };
+        Self { middles, edge_of, coarse: complex.nodes(), axes }
     }
 
     /// Positions of the halved lattice's nodes.
@@ -78,14 +84,26 @@ impl Refinement {
         refined
     }
 
+    /// A quantity of the complex's nodes at a node of the halved lattice, linear along the edge.
+    pub(super) fn mean(&self, node: u32, values: &[f32]) -> f32 {
+        (node as usize).checked_sub(self.coarse).map_or_else(
+            || values[node as usize],
+            |edge| {
+                let [i, j, ..] = self.middles[edge].0;
+                0.5 * (values[i as usize] + values[j as usize])
+            },
+        )
+    }
+
     /// The nodes of the complex that carry a node of the halved lattice.
     pub fn carriers(&self, node: u32) -> [u32; 4] {
         (node as usize).checked_sub(self.coarse).map_or([node; 4], |edge| self.middles[edge].0)
     }
 
-    /// The node at lattice offset `at` (each coordinate 0, 1 or 2 halves) of a cell with these corners.
+    /// The node at lattice offset `at` (each coordinate 0, 1 or 2 halves) of a cell with these corners; in the plane the
+    /// third coordinate says nothing.
     pub(super) fn node_in_cell(&self, corners: &[u32; 8], at: [usize; 3]) -> u32 {
-        let bits = |least: usize| (0..3).filter(|&a| at[a] >= least).map(|a| 1 << a).sum::<usize>();
+        let bits = |least: usize| (0..self.axes).filter(|&a| at[a] >= least).map(|a| 1 << a).sum::<usize>();
         let (low, high) = (bits(2), bits(1));
         if low == high {
             return corners[low];

@@ -1,4 +1,4 @@
-//! C = (V, E) and C_t = (V, T): nodes, edges and tetrahedra of the inside cells.
+//! C = (V, E) and C_t = (V, T): nodes, edges and elements (tetrahedra, in the plane triangles) of the inside cells.
 
 use glam::{IVec3, Vec3A};
 
@@ -28,16 +28,70 @@ pub const fn opposite(slot: usize) -> usize {
 /// `det[b − a, c − a, d − a] = 1`.
 pub const KUHN: [[usize; 4]; 6] = [[0, 1, 3, 7], [0, 5, 1, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 6, 4, 7]];
 
+/// The two triangles of a flat cell as corner bits, counter-clockwise at rest; the last corner stands twice, so that an
+/// element has four in both dimensions.
+pub const KUHN_FLAT: [[usize; 4]; 2] = [[0, 1, 3, 3], [0, 3, 2, 2]];
+
+/// Of what the domain is a part: of the plane (pictures) or of space (bodies).
+///
+/// Flat complexes lie in the layer z = 0. They are the same arrays with one layer of nodes, so that every stage is the
+/// same; only orientation, crossing and the projection of area ask for the dimension.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// Cells are squares, elements triangles, faces edges.
+    Two,
+    /// Cells are cubes, elements tetrahedra, faces triangles.
+    Three,
+}
+
+impl Dimension {
+    /// Corners of a cell.
+    pub const fn corners(self) -> usize {
+        match self {
+            Self::Two => 4,
+            Self::Three => 8,
+        }
+    }
+
+    /// The elements of a cell as corner bits.
+    pub const fn elements(self) -> &'static [[usize; 4]] {
+        match self {
+            Self::Two => &KUHN_FLAT,
+            Self::Three => &KUHN,
+        }
+    }
+
+    /// Area or volume of a size: its square or cube.
+    #[inline]
+    pub fn measure(self, size: f32) -> f32 {
+        match self {
+            Self::Two => size * size,
+            Self::Three => size * size * size,
+        }
+    }
+
+    /// The size of an area or volume ≥ 0: its square or cube root.
+    #[inline]
+    pub fn size(self, measure: f64) -> f64 {
+        match self {
+            Self::Two => measure.sqrt(),
+            Self::Three => measure.cbrt(),
+        }
+    }
+}
+
 /// The simplicial complex of a voxelized domain.
 ///
 /// Topology only speaks of node indices: two nodes may share a grid position (a split cell), nothing here forbids it.
 #[derive(Debug, Clone)]
 pub struct Complex {
+    /// Plane or space.
+    pub dimension: Dimension,
     /// Where the lattice lies in source space.
     pub grid: Grid,
     /// `[cells]` lowest corner of each inside cell, in cells.
     pub cells: Vec<IVec3>,
-    /// `[cells]` its eight nodes by corner bits.
+    /// `[cells]` its eight nodes by corner bits; in the plane four, each of them twice.
     pub corners: Vec<[u32; 8]>,
     /// `[nodes]` V, rest position in cells (whole numbers).
     pub rest: Vec<Vec3A>,
@@ -45,8 +99,15 @@ pub struct Complex {
     pub neighbours: Vec<[u32; NEIGHBOURS]>,
     /// `[nodes]` number of cells around the edge to each neighbour; 0 where it is missing.
     pub multiplicity: Vec<[u8; NEIGHBOURS]>,
-    /// `[faces]` boundary triangles, outward.
+    /// `[faces]` boundary triangles, outward; in the plane boundary edges with the inside on their left, the second node
+    /// twice.
     pub faces: Vec<[u32; 3]>,
+    /// `[faces]` the cell a face belongs to.
+    pub cell_of_face: Vec<u32>,
+    /// `[cells]` index of the solid (part of C that hangs together by faces, not by nodes or edges alone) it belongs to.
+    pub solid: Vec<u32>,
+    /// Number of solids.
+    pub solids: u32,
     /// `[nodes]` whether a node lies on the boundary.
     pub on_boundary: Vec<bool>,
     /// `[nodes]` index of the body (connected component of C) it belongs to.
@@ -63,6 +124,16 @@ impl Complex {
     ///
     /// Nodes are numbered in slabs along the longest axis, so that the fourteen neighbours of a node are near in memory.
     pub fn from_cells(grid: Grid, inside: &[bool]) -> Self {
+        Self::new(Dimension::Three, grid, inside)
+    }
+
+    /// The flat complex of the `inside` cells of a grid with one layer of cells.
+    pub fn from_flat_cells(grid: Grid, inside: &[bool]) -> Self {
+        debug_assert_eq!(grid.cells.z, 1);
+        Self::new(Dimension::Two, grid, inside)
+    }
+
+    fn new(dimension: Dimension, grid: Grid, inside: &[bool]) -> Self {
         let n = grid.cells.as_ivec3();
         let is_inside = |c: IVec3| {
             c.cmpge(IVec3::ZERO).all() && c.cmplt(n).all() && inside[((c.z * n.y + c.y) * n.x + c.x) as usize]
@@ -83,14 +154,17 @@ impl Complex {
             }
         }
 
-        let stride = n + 1;
+        let stride = match dimension {
+            Dimension::Two => IVec3::new(n.x + 1, n.y + 1, 1),
+            Dimension::Three => n + 1,
+        };
         let key = |p: IVec3| {
             (p[order[0]] as usize * stride[order[1]] as usize + p[order[1]] as usize) * stride[order[2]] as usize
                 + p[order[2]] as usize
         };
         let mut node_at = vec![u32::MAX; (stride.x * stride.y) as usize * stride.z as usize];
         for &cell in &cells {
-            for corner in 0..8 {
+            for corner in 0..dimension.corners() {
                 node_at[key(cell + corner_offset(corner))] = 0;
             }
         }
@@ -111,14 +185,18 @@ impl Complex {
             }
         }
         let corners: Vec<[u32; 8]> =
-            cells.iter().map(|&cell| std::array::from_fn(|k| node_at[key(cell + corner_offset(k))])).collect();
+            cells.iter().map(|&cell| std::array::from_fn(|k| node_at[key(cell + corner_offset(k % dimension.corners()))])).collect();
         let mut complex = Self {
+            dimension,
             grid,
             cells,
             corners,
             neighbours: (0..rest.len() as u32).map(|i| [i; NEIGHBOURS]).collect(),
             multiplicity: vec![[0; NEIGHBOURS]; rest.len()],
             faces: Vec::new(),
+            cell_of_face: Vec::new(),
+            solid: Vec::new(),
+            solids: 0,
             on_boundary: vec![false; rest.len()],
             body: Vec::new(),
             bodies: 0,
@@ -126,17 +204,25 @@ impl Complex {
             rest,
         };
         complex.link();
-        complex.skin(is_inside);
+        match dimension {
+            Dimension::Two => complex.outline(is_inside),
+            Dimension::Three => complex.skin(is_inside),
+        }
+        for &node in complex.faces.iter().flatten() {
+            complex.on_boundary[node as usize] = true;
+        }
         complex.label_bodies();
+        complex.label_solids();
         complex
     }
 
     /// Fills the neighbour tables from the cells.
     fn link(&mut self) {
+        let count = self.dimension.corners();
         for (cell, corners) in self.corners.iter().enumerate() {
-            for (corner, &node) in corners.iter().enumerate() {
+            for (corner, &node) in corners[..count].iter().enumerate() {
                 self.cells_around[node as usize][corner] = cell as u32;
-                for direction in 1..8 {
+                for direction in 1..count {
                     if corner & direction != 0 {
                         continue;
                     }
@@ -152,7 +238,7 @@ impl Complex {
 
     /// Collects the boundary triangles: faces of cells with no inside cell behind them.
     fn skin(&mut self, is_inside: impl Fn(IVec3) -> bool) {
-        for (&cell, corners) in self.cells.iter().zip(&self.corners) {
+        for (k, (&cell, corners)) in self.cells.iter().zip(&self.corners).enumerate() {
             for axis in 0..3 {
                 // (axis, u, v) is right-handed.
                 let (bit, u, v) = (1 << axis, 1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
@@ -169,11 +255,52 @@ impl Complex {
                     } else {
                         self.faces.extend([[a, c, b], [a, d, c]]);
                     }
+                    self.cell_of_face.extend([k as u32; 2]);
                 }
             }
         }
-        for &node in self.faces.iter().flatten() {
-            self.on_boundary[node as usize] = true;
+    }
+
+    /// Collects the boundary edges of a flat complex: sides of cells with no inside cell behind them.
+    fn outline(&mut self, is_inside: impl Fn(IVec3) -> bool) {
+        // Outward direction, and the side's corners in counter-clockwise order.
+        const SIDES: [(IVec3, [usize; 2]); 4] =
+            [(IVec3::X, [1, 3]), (IVec3::NEG_X, [2, 0]), (IVec3::Y, [3, 2]), (IVec3::NEG_Y, [0, 1])];
+        for (k, (&cell, corners)) in self.cells.iter().zip(&self.corners).enumerate() {
+            for (outward, [from, to]) in SIDES {
+                if !is_inside(cell + outward) {
+                    self.faces.push([corners[from], corners[to], corners[to]]);
+                    self.cell_of_face.push(k as u32);
+                }
+            }
+        }
+    }
+
+    /// Labels what hangs together by faces.
+    fn label_solids(&mut self) {
+        let count = self.dimension.corners();
+        self.solid = vec![u32::MAX; self.cells.len()];
+        let mut stack = Vec::new();
+        for seed in 0..self.cells.len() {
+            if self.solid[seed] != u32::MAX {
+                continue;
+            }
+            self.solid[seed] = self.solids;
+            stack.push(seed as u32);
+            while let Some(cell) = stack.pop() {
+                let corners = &self.corners[cell as usize];
+                // Behind a face lies the cell that has this cell's corner of the face as its own opposite corner.
+                for bit in (0..3).map(|axis| 1 << axis).filter(|&bit| bit < count) {
+                    for (corner, seen_from) in [(0, bit), (bit, 0)] {
+                        let other = self.cells_around[corners[corner] as usize][seen_from];
+                        if other != u32::MAX && self.solid[other as usize] == u32::MAX {
+                            self.solid[other as usize] = self.solids;
+                            stack.push(other);
+                        }
+                    }
+                }
+            }
+            self.solids += 1;
         }
     }
 
@@ -208,14 +335,15 @@ impl Complex {
         self.multiplicity.iter().map(|m| m[..7].iter().filter(|&&k| k > 0).count()).sum()
     }
 
-    /// Number of tetrahedra, |T|.
+    /// Number of tetrahedra or triangles, |T|.
     pub fn elements(&self) -> usize {
-        self.cells.len() * KUHN.len()
+        self.cells.len() * self.dimension.elements().len()
     }
 
-    /// The four nodes of element `t`: `t / 6` is its cell.
+    /// The nodes of element `t`, cell by cell; in the plane the last one stands twice.
     pub fn element(&self, t: usize) -> [u32; 4] {
-        KUHN[t % 6].map(|corner| self.corners[t / 6][corner])
+        let elements = self.dimension.elements();
+        elements[t % elements.len()].map(|corner| self.corners[t / elements.len()][corner])
     }
 
     /// Invariant: neighbour tables are symmetric, faces use boundary nodes, every boundary edge has an even number of
@@ -232,6 +360,17 @@ impl Complex {
                     return Err(format!("edge {i}–{j} does not lead back"));
                 }
             }
+        }
+        if self.dimension == Dimension::Two {
+            let mut balance = vec![0_i32; self.nodes()];
+            for &[from, to, _] in &self.faces {
+                balance[from as usize] += 1;
+                balance[to as usize] -= 1;
+            }
+            return match balance.iter().all(|&b| b == 0) {
+                true => Ok(()),
+                false => Err("the boundary edges are not closed".into()),
+            };
         }
         let mut directed: Vec<(u32, u32)> = self.faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
         directed.sort_unstable();
@@ -274,6 +413,33 @@ mod tests {
         assert_eq!((c.nodes(), c.elements(), c.bodies), (4 * 5 * 6, 360, 1));
         assert_eq!(c.faces.len(), 2 * 2 * (12 + 15 + 20));
         c.is_conforming().expect("conforming");
+    }
+
+    #[test]
+    fn a_flat_ring_conforms() {
+        let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::new(3, 3, 1) };
+        let mut inside = [true; 9];
+        inside[4] = false;
+        let c = Complex::from_flat_cells(grid, &inside);
+        assert_eq!((c.nodes(), c.elements(), c.bodies, c.solids, c.faces.len()), (16, 16, 1, 1, 16));
+        assert_eq!(c.edges(), 24 + 8);
+        c.is_conforming().expect("conforming");
+        for t in 0..c.elements() {
+            let [a, b, d, _] = c.element(t).map(|i| c.rest[i as usize]);
+            assert_eq!((b - a).cross(d - a).z, 1.0);
+        }
+        let mut c = c;
+        c.faces.pop();
+        assert!(c.is_conforming().is_err());
+    }
+
+    #[test]
+    fn cells_that_share_no_face_are_solids_of_their_own() {
+        let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::new(2, 2, 1) };
+        let c = Complex::from_flat_cells(grid, &[true, false, false, true]);
+        assert_eq!((c.bodies, c.solids), (1, 2));
+        let c = Complex::from_cells(grid, &[true, false, true, true]);
+        assert_eq!((c.bodies, c.solids), (1, 1));
     }
 
     #[test]

@@ -14,11 +14,13 @@
 //! All lattice coordinates are in cells (edge length 1); [`Grid`] converts to and from source units.
 
 mod complex;
+mod flat;
 pub mod plugin;
 mod rasterize;
 mod welds;
 
-pub use complex::{Complex, DIRECTIONS, KUHN, NEIGHBOURS, opposite};
+pub use complex::{Complex, DIRECTIONS, Dimension, KUHN, NEIGHBOURS, opposite};
+pub use flat::{Flat, Share, Shares};
 pub use rasterize::rasterize;
 pub use welds::suspected_welds;
 
