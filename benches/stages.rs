@@ -90,8 +90,7 @@ impl Midway {
         let mut app = solver(None);
         let world = app.world_mut();
         let settings = Settings { resolution, fidelity: 0.5, keys: 8, reference: None };
-        let domain =
-            Domain::body(subject.boundary.clone().into(), subject.importance(&[]).into(), settings);
+        let domain = Domain::body(subject.boundary.clone().into(), subject.importance(&[]).into(), settings);
         let entity = world.spawn(domain).id();
         let is_midway = |world: &World| {
             world.get::<Growing>(entity).is_some_and(|Growing(g): &Growing| g.lambda() >= 0.5 && g.is_new_step())

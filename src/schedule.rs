@@ -14,7 +14,7 @@ use bevy::{
     ecs::schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
     prelude::*,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 
 pub use crate::certificate::{Certificate, Distortion, Fidelity, RegionFidelity};
 use crate::{
@@ -23,6 +23,7 @@ use crate::{
     certificate::{certify, distortion, fidelity},
     collision::{
         Shell,
+        areas::region_areas,
         plugin::{CollisionPlugin, CollisionProblem, Growing, Shells, Warped},
     },
     diagnostics::Stopwatch,
@@ -42,8 +43,8 @@ use crate::{
         plugin::{Bound, SelfIntersections, TransferPlugin},
     },
     voxel::{
-        Complex, Flat,
-        plugin::{Lattice, SuspectedWelds, VoxelPlugin},
+        Complex, Flat, Shares,
+        plugin::{Lattice, PixelShares, SuspectedWelds, VoxelPlugin},
         suspected_welds, voxelize,
     },
 };
@@ -350,8 +351,13 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
     let (importance, linear) = (get.get::<Importance>()?, get.get::<LinearSolution>()?);
 
     let classic = watch.time("classic", || certify(complex, &mut shells[..1], &linear.0));
+    let mut binding = binding.clone();
     if domain.settings.reference.is_none() {
         watch.time("certificate", || film.mend(complex, &mut shells, &problem.importance));
+    }
+    // A flat surface may follow the nodes otherwise than at first.
+    if let Some(straightened) = shells.iter().find_map(Shell::binding).filter(|_| domain.picture.is_some()) {
+        binding = straightened.clone();
     }
     let frames: Vec<Frame> = watch.time("transfer", || {
         let frame = |k: &Keyframe| Frame {
@@ -374,6 +380,12 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
             distortion(complex, &last.positions),
         )
     });
+    let fidelity = match get.get::<PixelShares>() {
+        Some(PixelShares(shares)) => {
+            Fidelity { regions: flat_regions(complex, shares, names, &last.positions), ..fidelity }
+        }
+        None => fidelity,
+    };
     let boundary = &domain.boundary;
     let (self_intersections, welds) = (get.get::<SelfIntersections>()?.0, get.get::<SuspectedWelds>()?.0);
     Some(Outcome {
@@ -391,6 +403,22 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
         },
         boundary: domain.boundary.clone(),
     })
+}
+
+/// Regions of a picture, whose borders run through cells.
+fn flat_regions(complex: &Complex, shares: &Shares, names: &[String], positions: &[Vec3A]) -> Vec<RegionFidelity> {
+    let areas = region_areas(complex, shares, names.len(), positions);
+    let size = |area: f64, rest: f64| (area / rest).sqrt();
+    names
+        .iter()
+        .zip(areas)
+        .filter(|(_, a)| a.rest > 0.0)
+        .map(|(name, a)| RegionFidelity {
+            name: name.clone(),
+            asked: size(a.asked, a.rest),
+            achieved: size(a.achieved, a.rest),
+        })
+        .collect()
 }
 
 fn input_summary(boundary: &Boundary, self_intersections: usize) -> InputSummary {

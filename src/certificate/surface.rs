@@ -167,9 +167,7 @@ impl Surface {
         let n = self.triangles.len() as u32;
         (0..n)
             .into_par_iter()
-            .flat_map_iter(|s| {
-                (s + 1..n).filter(move |&t| self.cross(&triangle(s), &triangle(t))).map(move |t| (s, t))
-            })
+            .flat_map_iter(|s| (s + 1..n).filter(move |&t| self.cross(&triangle(s), &triangle(t))).map(move |t| (s, t)))
             .collect()
     }
 }

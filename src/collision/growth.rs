@@ -95,14 +95,19 @@ impl Growth {
         self.motion = f32::INFINITY;
     }
 
-    /// Whether λ = 1 has settled and is not kept yet.
+    /// Whether λ = 1 is reached and not kept yet.
     pub fn at_end(&self) -> bool {
-        self.step + 1 == self.steps.len() && self.settled()
+        self.step + 1 == self.steps.len()
     }
 
-    /// Settles once more at this λ, for something was changed.
+    /// Iterations at this λ so far.
+    pub fn iteration(&self) -> u32 {
+        self.iteration
+    }
+
+    /// Settles once more at this λ, for what is asked was changed.
     pub fn again(&mut self) {
-        self.iteration = 0;
+        self.iteration = 1;
         self.motion = f32::INFINITY;
     }
 

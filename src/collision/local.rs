@@ -137,7 +137,8 @@ pub fn target(corners: [Vec3A; 8], q: Quat, size: f32, fidelity: f32) -> (Mat3A,
 ///
 /// `F = (Σ_e Δ'_e Δ_eᵀ)(Σ_e Δ_e Δ_eᵀ)⁻¹` over five edges, where `Σ Δ Δᵀ = 2 I + J` with inverse `(I − J / 4) / 2`. A map
 /// of the plane is the sum of a conformal part `(a, b)` and an anticonformal one `(c, d)`, and its determinant is
-/// `|conformal|² − |anticonformal|²`.
+/// `|conformal|² − |anticonformal|²`. Of the nearest map with the asked area the anticonformal part is shortened a little
+/// and the conformal one made good for it: the area stays what is asked, and shear that nothing needs dies out.
 #[inline]
 pub fn flat_target(corners: [Vec3A; 8], size: f32, fidelity: f32) -> Mat3A {
     let (mut x, mut y) = (Vec3A::ZERO, Vec3A::ZERO);
@@ -149,16 +150,23 @@ pub fn flat_target(corners: [Vec3A; 8], size: f32, fidelity: f32) -> Mat3A {
     let (x, y) = ((x - mean) * 0.5, (y - mean) * 0.5);
     let conformal = Vec2::new(x.x + y.y, x.y - y.x) * 0.5;
     let anticonformal = Vec2::new(x.x - y.y, x.y + y.x) * 0.5;
-    let shape = conformal.try_normalize().unwrap_or(Vec2::X) * size;
+    let turn = conformal.try_normalize().unwrap_or(Vec2::X);
     let kappa = flat_kappa(conformal.length_squared(), anticonformal.length_squared(), size * size);
-    let conformal = shape * (1.0 - fidelity) + conformal * (fidelity / (1.0 - kappa));
-    let anticonformal = anticonformal * (fidelity / (1.0 + kappa));
+    let anticonformal = anticonformal * (FLAT_SHEAR_KEPT / (1.0 + kappa));
+    let conformal = turn * (size * size + anticonformal.length_squared()).sqrt();
+    let conformal = turn * size * (1.0 - fidelity) + conformal * fidelity;
+    let anticonformal = anticonformal * fidelity;
     Mat3A::from_cols(
         Vec3A::new(conformal.x + anticonformal.x, conformal.y + anticonformal.y, 0.0),
         Vec3A::new(anticonformal.y - conformal.y, conformal.x - anticonformal.x, 0.0),
         Vec3A::ZERO,
     )
 }
+
+/// Part of the anticonformal part that is kept in each iteration at μ = 1. At 1 a population cartogram of 49 states had a
+/// conformal distortion of p95 9.4, at 0.95 of 5.0, at 0.9 of 4.0; below, areas within regions give way (size error p95 6.6,
+/// 7.5 and 9.8 %).
+const FLAT_SHEAR_KEPT: f32 = 0.95;
 
 /// Newton steps for κ, kept within the bracket: more than rounding needs.
 const KAPPA_STEPS: usize = 8;
@@ -196,14 +204,22 @@ mod tests {
     use super::*;
     use crate::voxel::{DIRECTIONS, KUHN};
 
+    /// The nearest map of which a target at μ = 1 was made.
+    fn sheared(p: Mat3A, size: f32) -> Mat3A {
+        let anticonformal = Vec2::new(p.x_axis.x - p.y_axis.y, p.x_axis.y + p.y_axis.x) * (0.5 / FLAT_SHEAR_KEPT);
+        let turn = Vec2::new(p.x_axis.x + p.y_axis.y, p.x_axis.y - p.y_axis.x).normalize();
+        let conformal = turn * (size * size + anticonformal.length_squared()).sqrt();
+        Mat3A::from_cols(
+            Vec3A::new(conformal.x + anticonformal.x, conformal.y + anticonformal.y, 0.0),
+            Vec3A::new(anticonformal.y - conformal.y, conformal.x - anticonformal.x, 0.0),
+            Vec3A::ZERO,
+        )
+    }
+
     #[test]
-    fn a_flat_target_is_the_nearest_map_with_the_asked_area() {
-        let maps = [
-            [[1.2, 0.3], [-0.2, 0.9]],
-            [[1.0, 0.0], [0.0, 1.0]],
-            [[2.0, 0.1], [0.0, 0.2]],
-            [[0.3, -0.9], [1.1, 0.2]],
-        ];
+    fn a_flat_target_has_the_asked_area_and_comes_of_the_nearest_map() {
+        let maps =
+            [[[1.2, 0.3], [-0.2, 0.9]], [[1.0, 0.0], [0.0, 1.0]], [[2.0, 0.1], [0.0, 0.2]], [[0.3, -0.9], [1.1, 0.2]]];
         for [x, y] in maps {
             let (x, y) = (Vec3A::new(x[0], x[1], 0.0), Vec3A::new(y[0], y[1], 0.0));
             let corners = std::array::from_fn(|k| x * (k & 1) as f32 + y * (k >> 1 & 1) as f32);
@@ -211,7 +227,8 @@ mod tests {
                 let p = flat_target(corners, size, 1.0);
                 let det = p.x_axis.x * p.y_axis.y - p.x_axis.y * p.y_axis.x;
                 assert!((det - size * size).abs() < 1e-4, "{x} {y} {size}: {det}");
-                // Nearest: P − F is parallel to the cofactors of P.
+                // Undo what dies out; the rest is nearest: P − F is parallel to the cofactors of P.
+                let p = sheared(p, size);
                 let cofactor = [Vec3A::new(p.y_axis.y, -p.y_axis.x, 0.0), Vec3A::new(-p.x_axis.y, p.x_axis.x, 0.0)];
                 let off = [p.x_axis - x, p.y_axis - y];
                 let along = (off[0].dot(cofactor[0]) + off[1].dot(cofactor[1]))

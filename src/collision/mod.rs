@@ -42,6 +42,9 @@ const GLOBAL_STEPS: [u32; 2] = [1, 2];
 /// a wall of one cell is not skipped by one.
 const STEP_LIMIT: f32 = 0.5;
 
+/// The same in the plane: every committed state is checked whole and needs no way to it, and large parts have to flow far.
+const FLAT_STEP_LIMIT: f32 = 4.0;
+
 /// The constant part of the collision optimization: what depends on complex and importance alone.
 #[derive(Debug, Clone)]
 pub struct Problem {
@@ -211,7 +214,11 @@ pub fn guard_step(
     mut proposed: Vec<Vec3A>,
     holds: &mut Vec<u8>,
 ) -> (f32, Guarded) {
-    guard::limit(positions, &mut proposed, |i| STEP_LIMIT * asked.radius[i].min(1.0));
+    let reach = match complex.dimension {
+        Dimension::Two => FLAT_STEP_LIMIT,
+        Dimension::Three => STEP_LIMIT,
+    };
+    guard::limit(positions, &mut proposed, |i| reach * asked.radius[i].min(1.0));
     let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
     let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
     let motion = positions

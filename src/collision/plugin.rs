@@ -4,7 +4,8 @@ use bevy::prelude::*;
 use glam::{Mat3A, Quat, Vec3A};
 
 use super::{
-    Asked, areas::AreaCorrection, Contacts, Growth, Guarded, Problem, Shell, contact_step, global_step, grow, guard_step, local_step,
+    Asked, Contacts, Growth, Guarded, Problem, Shell, areas::AreaCorrection, contact_step, global_step, grow,
+    guard_step, local_step,
 };
 use crate::{
     diagnostics::Stopwatch,
@@ -92,7 +93,8 @@ fn start(
         if let Some(regions) = domain.picture.as_ref().and_then(|picture| picture.regions.as_ref()) {
             commands.entity(entity).insert(AreaCorrection::new(regions.names.len()));
         }
-        let problem = watch.time("grow", || Problem::of_cells(complex, importance.cells.clone(), domain.settings.fidelity));
+        let problem =
+            watch.time("grow", || Problem::of_cells(complex, importance.cells.clone(), domain.settings.fidelity));
         let (low, high) = problem.importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
         commands.entity(entity).insert((
             CollisionProblem(problem),
@@ -111,16 +113,20 @@ type Corrected<'a> = (
     &'a Warped,
     &'a mut CollisionProblem,
     &'a mut Growing,
+    &'a mut Sizes,
     &'a mut AreaCorrection,
 );
 
 /// Regions of a picture that have not their area yet ask for more or less, and λ = 1 settles once more.
 fn correct_areas(mut domains: Query<Corrected>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), PixelShares(shares), warped, mut problem, mut growing, mut correction) in &mut domains {
-        if !growing.0.done() && growing.0.at_end() {
+    for (Lattice(complex), PixelShares(shares), warped, mut problem, mut growing, mut sizes, mut correction) in
+        &mut domains
+    {
+        if growing.0.at_end() && correction.is_due(growing.0.iteration(), growing.0.settled()) {
             let corrected = watch.time("grow", || correction.correct(complex, shares, &warped.0));
             if let Some(importance) = corrected {
                 problem.0.importance = importance;
+                sizes.0 = grow(complex, &problem.0, 1.0);
                 growing.0.again();
             }
         }

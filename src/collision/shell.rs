@@ -213,6 +213,26 @@ impl Shell {
         if self.flat_elements.is_empty() { Vec::new() } else { self.inverted_at(&self.positions(nodes)) }
     }
 
+    /// Makes a flat surface follow the complex's own elements where it turns over or crosses itself in a state although
+    /// they do not: four-point rules overshoot where sizes change abruptly. Returns whether anything was changed.
+    pub fn straighten(&mut self, nodes: &[Vec3A]) -> bool {
+        if self.flat_elements.is_empty() {
+            return false;
+        }
+        let positions = self.positions(nodes).into_owned();
+        let mut vertices: Vec<u32> =
+            self.inverted_at(&positions).iter().flat_map(|&t| self.flat_elements[t as usize]).collect();
+        for (s, t) in self.surface.crossings(&positions) {
+            vertices.extend(self.surface.triangles[s as usize].iter().chain(&self.surface.triangles[t as usize]));
+        }
+        self.binding.as_mut().is_some_and(|binding| binding.straighten(vertices.into_iter()))
+    }
+
+    /// How its vertices follow the nodes, where they are not the nodes.
+    pub fn binding(&self) -> Option<&Binding> {
+        self.binding.as_ref()
+    }
+
     fn inverted_at(&self, positions: &[Vec3A]) -> Vec<u32> {
         let is_sound = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| positions[v as usize].as_dvec3());

@@ -53,6 +53,7 @@ impl Film {
     /// Makes every blend of two neighbouring keyframes valid where it is looked at ([`Watch::Way`]): by new keyframes
     /// between them, and where that does not help, by drawing the later one back to what can be reached from the earlier.
     pub fn mend(&mut self, complex: &Complex, shells: &mut [Shell], size: &[f32]) {
+        self.straighten(complex, shells);
         let mut k = 1;
         while k < self.keyframes.len() {
             let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
@@ -65,6 +66,33 @@ impl Film {
             } else {
                 self.keyframes[k] = reached(complex, shells, size, from, to.lambda, to.positions.clone());
                 k += 1;
+            }
+        }
+    }
+}
+
+impl Film {
+    /// Makes a flat surface follow the complex where it must in any keyframe or blend that is looked at, and certifies all
+    /// keyframes anew where that changed them.
+    fn straighten(&mut self, complex: &Complex, shells: &mut [Shell]) {
+        let mut changed = false;
+        let mut again = true;
+        while again {
+            again = false;
+            for k in 0..self.keyframes.len() {
+                let at = &self.keyframes[k].positions;
+                again |= shells.iter_mut().fold(false, |any, shell| shell.straighten(at) || any);
+                let Some(next) = self.keyframes.get(k + 1) else { continue };
+                for &part in Watch::Way.parts().iter().filter(|&&part| part < 1.0) {
+                    let state = blend(at, &next.positions, part);
+                    again |= shells.iter_mut().fold(false, |any, shell| shell.straighten(&state) || any);
+                }
+            }
+            changed |= again;
+        }
+        if changed {
+            for keyframe in &mut self.keyframes {
+                keyframe.certificate = certify(complex, shells, &keyframe.positions);
             }
         }
     }

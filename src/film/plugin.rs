@@ -57,6 +57,9 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         }
         let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
         let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
+        while !certificate.certified() && straighten(shells, warped) {
+            certificate = watch.time("certificate", || certify(complex, shells, warped));
+        }
         if !certificate.certified() {
             at_risk.0 = true;
             growing.0.hurry();
@@ -65,6 +68,11 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         film.push(Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate });
         growing.0.advance();
     }
+}
+
+/// Straightens what a flat surface needs; whether it helped to change anything.
+fn straighten(shells: &mut [Shell], warped: &[Vec3A]) -> bool {
+    shells.iter_mut().fold(false, |changed, shell| shell.straighten(warped) || changed)
 }
 
 /// Draws a state that cannot be reached without crossing back towards the last keyframe, and certifies it.

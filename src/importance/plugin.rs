@@ -38,11 +38,7 @@ fn spread_new(
         let importance = watch.time("importance", || {
             if let Some(PixelShares(shares)) = shares {
                 let cells = shares.sizes(&[]);
-                return Importance {
-                    nodes: node_importance(complex, &cells),
-                    cells,
-                    region_of_cell: shares.regions(),
-                };
+                return Importance { nodes: node_importance(complex, &cells), cells, region_of_cell: shares.regions() };
             }
             let sampling = Sampling::new(&domain.boundary, complex);
             let asked = domain.importance.evaluate(&domain.boundary, &sampling.samples);

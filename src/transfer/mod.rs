@@ -205,6 +205,14 @@ impl Binding {
         })
     }
 
+    /// Lets vertices follow the straight middles of edges instead of the four-point rule, in every state: see
+    /// [`Refinement`]. Returns whether any did not.
+    pub fn straighten(&mut self, vertices: impl Iterator<Item = u32>) -> bool {
+        let nodes = &self.nodes;
+        // Straight or not, the rest positions are the same.
+        self.refinement.straighten(vertices.flat_map(|v| nodes[v as usize]))
+    }
+
     /// `[vertices]` means of a quantity of the complex's nodes, by the weights of each vertex's halved element.
     pub fn of_nodes(&self, values: &[f32]) -> Vec<f32> {
         let node = |i: u32| self.refinement.mean(i, values);

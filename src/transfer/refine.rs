@@ -84,6 +84,19 @@ impl Refinement {
         refined
     }
 
+    /// Sets nodes of the halved lattice onto the straight middle of their edge, in every state. Returns whether any was not.
+    ///
+    /// Where all are straight, the halved lattice is carried by the complex's own elements and is as valid as they are.
+    pub(super) fn straighten(&mut self, nodes: impl Iterator<Item = u32>) -> bool {
+        let mut changed = false;
+        for edge in nodes.filter_map(|node| (node as usize).checked_sub(self.coarse)) {
+            let (at, weights) = &mut self.middles[edge];
+            changed |= weights[0] != 0.5;
+            (*at, *weights) = ([at[0], at[1], at[0], at[0]], [0.5, 0.5, 0.0, 0.0]);
+        }
+        changed
+    }
+
     /// A quantity of the complex's nodes at a node of the halved lattice, linear along the edge.
     pub(super) fn mean(&self, node: u32, values: &[f32]) -> f32 {
         (node as usize).checked_sub(self.coarse).map_or_else(

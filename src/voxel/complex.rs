@@ -184,8 +184,10 @@ impl Complex {
                 }
             }
         }
-        let corners: Vec<[u32; 8]> =
-            cells.iter().map(|&cell| std::array::from_fn(|k| node_at[key(cell + corner_offset(k % dimension.corners()))])).collect();
+        let corners: Vec<[u32; 8]> = cells
+            .iter()
+            .map(|&cell| std::array::from_fn(|k| node_at[key(cell + corner_offset(k % dimension.corners()))]))
+            .collect();
         let mut complex = Self {
             dimension,
             grid,

@@ -113,8 +113,10 @@ impl Flat {
     pub fn voxelize(&self, resolution: u32) -> Result<(Complex, Shares)> {
         let grid = self.grid(resolution)?;
         let UVec3 { x: columns, y: rows, .. } = grid.cells;
-        let of_row: Vec<Vec<Vec<Share>>> =
-            (0..rows).into_par_iter().map(|row| (0..columns).map(|c| self.shares_of(&grid, c, row)).collect()).collect();
+        let of_row: Vec<Vec<Vec<Share>>> = (0..rows)
+            .into_par_iter()
+            .map(|row| (0..columns).map(|c| self.shares_of(&grid, c, row)).collect())
+            .collect();
         let inside: Vec<bool> = of_row.iter().flatten().map(|shares| !shares.is_empty()).collect();
         let complex = Complex::from_flat_cells(grid, &inside);
         let mut shares = Shares { start: vec![0], list: Vec::new() };
@@ -179,7 +181,10 @@ mod tests {
             importance: text.iter().map(|&c| if c == 'b' { 2.0 } else { 1.0 }).collect(),
             regions: Some(Regions {
                 names: vec!["a".into(), "b".into()],
-                of_vertex: text.iter().map(|&c| ['a', 'b'].iter().position(|&r| r == c).map_or(u32::MAX, |r| r as u32)).collect(),
+                of_vertex: text
+                    .iter()
+                    .map(|&c| ['a', 'b'].iter().position(|&r| r == c).map_or(u32::MAX, |r| r as u32))
+                    .collect(),
             }),
         }
     }
