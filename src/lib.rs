@@ -55,6 +55,7 @@ pub mod export;
 pub mod film;
 pub mod gallery;
 pub mod importance;
+pub mod picture;
 pub mod reference;
 pub mod scene;
 pub mod schedule;

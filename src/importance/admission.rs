@@ -5,7 +5,7 @@ use crate::{Error, Result};
 
 /// Checks each value that comes in, and counts what it had to change.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Admission {
+pub(crate) struct Admission {
     /// Move values to `CLAMP_MIN..=CLAMP_MAX` rather than refuse them.
     pub clamp: bool,
     /// How many values were moved or left out.

@@ -14,7 +14,7 @@
 //! [`Stack::load`] reads and checks every file once; [`Stack::evaluate`] is a pure function of each sample, so its
 //! result is the same for any number of threads.
 
-mod admission;
+pub(crate) mod admission;
 mod colour;
 mod layer;
 mod picture;
