@@ -14,7 +14,7 @@ use bevy::{
     ecs::schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
     prelude::*,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 
 pub use crate::certificate::{Certificate, Distortion, Fidelity, RegionFidelity};
 use crate::{
@@ -28,7 +28,7 @@ use crate::{
     diagnostics::Stopwatch,
     edge::plugin::{EdgePlugin, LinearSolution},
     film::{
-        Keyframe,
+        Film, Keyframe,
         plugin::{FilmPlugin, Reel},
     },
     importance::{
@@ -257,6 +257,25 @@ pub struct Outcome {
     pub importance: Vec<f32>,
 }
 
+/// A solved domain: what came of it, and what it takes to show and check any state of its film.
+#[derive(Debug, Clone)]
+pub struct Solved {
+    /// C and C_t.
+    pub complex: Complex,
+    /// B to C.
+    pub binding: Binding,
+    /// Surfaces that must not cross, for [`certify`]: the complex's skin first.
+    pub shells: Vec<Shell>,
+    /// The node states.
+    pub film: Film,
+    /// V', `[nodes]`, in cells.
+    pub linear: Vec<Vec3A>,
+    /// `[nodes]` importance.
+    pub importance: Vec<f32>,
+    /// The rest.
+    pub outcome: Outcome,
+}
+
 /// Warps a boundary: runs [`Solve`] until λ = 1 has settled, and hands out the film.
 ///
 /// # Errors
@@ -268,6 +287,19 @@ pub fn warp(
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<Outcome> {
+    solve(boundary, importance, settings, observer).map(|solved| solved.outcome)
+}
+
+/// As [`warp`], with the states of the nodes.
+///
+/// # Errors
+/// As [`warp`].
+pub fn solve(
+    boundary: &Boundary,
+    importance: &importance::Stack,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<Solved> {
     check_resolution(settings.resolution)?;
     let mut app = solver(settings.reference);
     let world = app.world_mut();
@@ -290,7 +322,7 @@ pub fn warp(
             break;
         }
     }
-    outcome(world, entity).ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+    solved(world, entity).ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
 }
 
 /// Where a domain is; the stage named is the one about to run.
@@ -317,7 +349,7 @@ fn progress(world: &World, entity: Entity) -> Progress {
     Progress { stage, lambda, size_error_p95, fraction: growth.fraction() }
 }
 
-fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
+fn solved(world: &mut World, entity: Entity) -> Option<Solved> {
     let mut watch = world.remove_resource::<Stopwatch>()?;
     let mut shells = std::mem::take(&mut world.get_mut::<Shells>(entity)?.0);
     let mut film = std::mem::take(&mut world.get_mut::<Reel>(entity)?.0);
@@ -349,7 +381,7 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
     });
     let boundary = &domain.boundary;
     let (self_intersections, welds) = (get.get::<SelfIntersections>()?.0, get.get::<SuspectedWelds>()?.0);
-    Some(Outcome {
+    let outcome = Outcome {
         input: input_summary(boundary, self_intersections),
         domain: domain_summary(complex, domain.settings.resolution, welds),
         classic: Some(Counts { inverted: classic.inverted(), crossings: classic.crossings() }),
@@ -359,7 +391,11 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
         distortion,
         seconds: watch.seconds(),
         importance: domain.importance.at_vertices(boundary),
-    })
+    };
+    let mut domain = world.entity_mut(entity);
+    let (Lattice(complex), Bound(binding)) = (domain.take()?, domain.take()?);
+    let (LinearSolution(linear), Importance { nodes: importance, .. }) = (domain.take()?, domain.take()?);
+    Some(Solved { complex, binding, shells, film, linear, importance, outcome })
 }
 
 fn input_summary(boundary: &Boundary, self_intersections: usize) -> InputSummary {
