@@ -59,6 +59,8 @@ pub mod reference;
 pub mod scene;
 pub mod schedule;
 pub mod transfer;
+#[cfg(feature = "render")]
+pub mod view;
 pub mod voxel;
 
 pub use error::{Error, Result};
