@@ -55,6 +55,8 @@ pub mod export;
 pub mod film;
 pub mod gallery;
 pub mod importance;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod reference;
 pub mod scene;
 pub mod schedule;
