@@ -56,10 +56,14 @@ pub mod film;
 pub mod gallery;
 pub mod importance;
 pub mod picture;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod reference;
 pub mod scene;
 pub mod schedule;
 pub mod transfer;
+#[cfg(feature = "render")]
+pub mod view;
 pub mod voxel;
 
 pub use error::{Error, Result};

@@ -29,7 +29,7 @@ use crate::{
     diagnostics::Stopwatch,
     edge::plugin::{EdgePlugin, LinearSolution},
     film::{
-        Keyframe,
+        Film, Keyframe,
         plugin::{FilmPlugin, Reel},
     },
     importance::{
@@ -270,8 +270,27 @@ pub struct Outcome {
     pub seconds: Vec<(&'static str, f64)>,
     /// `[vertices]` importance.
     pub importance: Vec<f32>,
-    /// B.
+}
+
+/// A solved domain: what came of it, and what it takes to show and check any state of its film.
+#[derive(Debug, Clone)]
+pub struct Solved {
+    /// B; of a picture the flat mesh it is drawn on.
     pub boundary: Arc<Boundary>,
+    /// C and C_t.
+    pub complex: Complex,
+    /// B to C.
+    pub binding: Binding,
+    /// Surfaces that must not cross, for [`certify`]: the complex's skin first.
+    pub shells: Vec<Shell>,
+    /// The node states.
+    pub film: Film,
+    /// V', `[nodes]`, in cells.
+    pub linear: Vec<Vec3A>,
+    /// `[nodes]` importance.
+    pub importance: Vec<f32>,
+    /// The rest.
+    pub outcome: Outcome,
 }
 
 /// Warps a boundary: runs [`Solve`] until λ = 1 has settled, and hands out the film.
@@ -285,14 +304,28 @@ pub fn warp(
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<Outcome> {
-    solve(Domain::body(Arc::new(boundary.clone()), Arc::new(importance.clone()), settings.clone()), observer)
+    solve(boundary, importance, settings, observer).map(|solved| solved.outcome)
 }
 
-/// Warps a domain, body or picture.
+/// As [`warp`], with the states of the nodes.
 ///
 /// # Errors
 /// As [`warp`].
-pub fn solve(domain: Domain, observer: &dyn Observer) -> Result<Outcome> {
+pub fn solve(
+    boundary: &Boundary,
+    importance: &importance::Stack,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<Solved> {
+    let domain = Domain::body(Arc::new(boundary.clone()), Arc::new(importance.clone()), settings.clone());
+    solve_domain(domain, observer)
+}
+
+/// As [`solve`], of a body or a picture.
+///
+/// # Errors
+/// As [`warp`].
+pub fn solve_domain(domain: Domain, observer: &dyn Observer) -> Result<Solved> {
     let settings = &domain.settings;
     match domain.picture {
         None => check_resolution(settings.resolution)?,
@@ -314,7 +347,7 @@ pub fn solve(domain: Domain, observer: &dyn Observer) -> Result<Outcome> {
             break;
         }
     }
-    outcome(world, entity).ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+    solved(world, entity).ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
 }
 
 /// Where a domain is; the stage named is the one about to run.
@@ -341,7 +374,7 @@ fn progress(world: &World, entity: Entity) -> Progress {
     Progress { stage, lambda, size_error_p95, fraction: growth.fraction() }
 }
 
-fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
+fn solved(world: &mut World, entity: Entity) -> Option<Solved> {
     let mut watch = world.remove_resource::<Stopwatch>()?;
     let mut shells = std::mem::take(&mut world.get_mut::<Shells>(entity)?.0);
     let mut film = std::mem::take(&mut world.get_mut::<Reel>(entity)?.0);
@@ -388,7 +421,7 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
     };
     let boundary = &domain.boundary;
     let (self_intersections, welds) = (get.get::<SelfIntersections>()?.0, get.get::<SuspectedWelds>()?.0);
-    Some(Outcome {
+    let outcome = Outcome {
         input: input_summary(boundary, self_intersections),
         domain: domain_summary(complex, domain.settings.resolution, welds),
         classic: Some(Counts { inverted: classic.inverted(), crossings: classic.crossings() }),
@@ -401,8 +434,12 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
             Some(_) => binding.of_nodes(&importance.nodes),
             None => domain.importance.at_vertices(boundary),
         },
-        boundary: domain.boundary.clone(),
-    })
+    };
+    let boundary = domain.boundary.clone();
+    let mut domain = world.entity_mut(entity);
+    let Lattice(complex) = domain.take()?;
+    let (LinearSolution(linear), Importance { nodes: importance, .. }) = (domain.take()?, domain.take()?);
+    Some(Solved { boundary, complex, binding, shells, film, linear, importance, outcome })
 }
 
 /// Regions of a picture, whose borders run through cells.

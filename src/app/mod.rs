@@ -11,9 +11,11 @@
 
 mod cancel;
 mod inspect;
+mod load;
 pub mod options;
 mod outputs;
 mod progress;
+pub mod scene_options;
 mod warp;
 
 use std::ffi::OsString;
