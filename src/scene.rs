@@ -54,6 +54,21 @@ pub enum Source {
     Gallery(String),
 }
 
+/// What pictures' names end in; a picture by another name has the resolution of a body as its limit.
+const PICTURE_EXTENSIONS: [&str; 4] = ["png", "jpg", "jpeg", "webp"];
+
+impl Source {
+    /// Whether its name says that it is a picture.
+    pub fn is_picture(&self) -> bool {
+        match self {
+            Self::File(path) => path
+                .extension()
+                .is_some_and(|extension| PICTURE_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known))),
+            Self::Gallery(_) => false,
+        }
+    }
+}
+
 impl From<String> for Source {
     fn from(text: String) -> Self {
         match text.strip_prefix("gallery:") {
@@ -104,6 +119,9 @@ pub struct Draft {
     /// Keyframes of the growth, 1..=[`MAX_KEYS`].
     #[serde(default = "defaults::keys")]
     pub keys: usize,
+    /// Of a picture: the colour and tolerance of its background, `COLOUR,TOLERANCE`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub background: Option<String>,
 }
 
 mod defaults {
@@ -133,6 +151,7 @@ impl Draft {
             resolution: defaults::resolution(),
             fidelity: defaults::fidelity(),
             keys: defaults::keys(),
+            background: None,
         }
     }
 }
@@ -159,7 +178,11 @@ impl Scene {
             let sentence = format!("scene version {} is not known; this program reads {VERSION}", draft.version);
             return Err(Error::input(sentence));
         }
-        check_resolution(draft.resolution)?;
+        if draft.source.is_picture() {
+            check_flat_resolution(draft.resolution)?;
+        } else {
+            check_resolution(draft.resolution)?;
+        }
         if !(0.0..=1.0).contains(&draft.fidelity) {
             return Err(Error::input(format!("fidelity {} is not within 0 to 1", draft.fidelity)));
         }

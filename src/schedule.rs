@@ -23,7 +23,7 @@ use crate::{
     certificate::{certify, distortion, fidelity},
     collision::{
         Shell,
-        areas::region_areas,
+        areas::{AreaCorrection, Areas},
         plugin::{CollisionPlugin, CollisionProblem, Growing, Shells, Warped},
     },
     diagnostics::Stopwatch,
@@ -43,8 +43,8 @@ use crate::{
         plugin::{Bound, SelfIntersections, TransferPlugin},
     },
     voxel::{
-        Complex, Flat, Shares,
-        plugin::{Lattice, PixelShares, SuspectedWelds, VoxelPlugin},
+        Complex, Flat,
+        plugin::{Lattice, SuspectedWelds, VoxelPlugin},
         suspected_welds, voxelize,
     },
 };
@@ -413,11 +413,11 @@ fn solved(world: &mut World, entity: Entity) -> Option<Solved> {
             distortion(complex, &last.positions),
         )
     });
-    let fidelity = match get.get::<PixelShares>() {
-        Some(PixelShares(shares)) => {
-            Fidelity { regions: flat_regions(complex, shares, names, &last.positions), ..fidelity }
+    let fidelity = match (get.get::<AreaCorrection>(), frames.last()) {
+        (Some(correction), Some(Frame { positions, .. })) => {
+            Fidelity { regions: flat_regions(correction, names, &domain.boundary, positions), ..fidelity }
         }
-        None => fidelity,
+        _ => fidelity,
     };
     let boundary = &domain.boundary;
     let (self_intersections, welds) = (get.get::<SelfIntersections>()?.0, get.get::<SuspectedWelds>()?.0);
@@ -443,19 +443,20 @@ fn solved(world: &mut World, entity: Entity) -> Option<Solved> {
 }
 
 /// Regions of a picture, whose borders run through cells.
-fn flat_regions(complex: &Complex, shares: &Shares, names: &[String], positions: &[Vec3A]) -> Vec<RegionFidelity> {
-    let areas = region_areas(complex, shares, names.len(), positions);
+fn flat_regions(
+    correction: &AreaCorrection,
+    names: &[String],
+    mesh: &Boundary,
+    places: &[DVec3],
+) -> Vec<RegionFidelity> {
+    let areas = correction.pieces().areas(mesh, places);
     let size = |area: f64, rest: f64| (area / rest).sqrt();
-    names
-        .iter()
-        .zip(areas)
-        .filter(|(_, a)| a.rest > 0.0)
-        .map(|(name, a)| RegionFidelity {
-            name: name.clone(),
-            asked: size(a.asked, a.rest),
-            achieved: size(a.achieved, a.rest),
-        })
-        .collect()
+    let region = |(name, a): (&String, Areas)| RegionFidelity {
+        name: name.clone(),
+        asked: size(a.asked, a.rest),
+        achieved: size(a.achieved, a.rest),
+    };
+    names.iter().zip(areas).filter(|(_, a)| a.rest > 0.0).map(region).collect()
 }
 
 fn input_summary(boundary: &Boundary, self_intersections: usize) -> InputSummary {

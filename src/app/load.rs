@@ -1,14 +1,18 @@
 //! From a scene to what the engine takes: files read, importance evaluated, warnings told.
 
+use std::io::Read as _;
 use std::path::Path;
 
 use super::scene_options::SceneOptions;
 use super::{cancel, note};
-use crate::boundary::{self, Attribute, Boundary};
+use crate::boundary::{self, Attribute, Boundary, Regions};
 use crate::gallery::human::read_values;
 use crate::importance::{Layer, Stack};
+use crate::picture::importance::Field;
+use crate::picture::{self, Cut, Picture};
 use crate::scene::{Scene, Source};
 use crate::schedule::Settings;
+use crate::voxel::Flat;
 use crate::{Error, Result, gallery};
 
 /// What the engine takes.
@@ -22,12 +26,7 @@ pub(super) struct Loaded {
 
 /// Reads what a scene names. From here on Ctrl-C asks rather than kills, and as many threads work as were asked for.
 pub(super) fn load(scene: &Scene, options: &SceneOptions) -> Result<Loaded> {
-    if let Some(threads) = options.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
-        pool.build_global().map_err(|e| Error::Fault(format!("starting {threads} threads: {e}")))?;
-    }
-    cancel::listen();
-
+    begin(options)?;
     let mut boundary = open(&scene.source)?;
     let layers = layers(scene, &mut boundary)?;
     let stack = Stack::load(&layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
@@ -35,16 +34,99 @@ pub(super) fn load(scene: &Scene, options: &SceneOptions) -> Result<Loaded> {
         boundary.regions = Some(regions.clone());
     }
     let warnings = warnings(scene, &boundary, &stack);
+    tell(&warnings, options);
+    Ok(Loaded { boundary, stack, settings: settings(scene, options), warnings })
+}
+
+/// A picture and what is asked of it.
+pub(super) struct LoadedPicture {
+    pub picture: Picture,
+    pub field: Field,
+    /// Both, as the engine takes them.
+    pub flat: Flat,
+    pub settings: Settings,
+    /// Told already, and for the report.
+    pub warnings: Vec<String>,
+}
+
+/// The bytes of a scene's source if they are a picture's.
+pub(super) fn picture_bytes(scene: &Scene) -> Result<Option<Vec<u8>>> {
+    let Source::File(path) = &scene.source else { return Ok(None) };
+    let mut start = Vec::new();
+    let file = std::fs::File::open(path).and_then(|file| match file.metadata()?.is_file() {
+        true => Ok(file),
+        false => Err(std::io::ErrorKind::IsADirectory.into()),
+    });
+    // What cannot be read is told by the reader of meshes, which knows more about it.
+    let Ok(file) = file else { return Ok(None) };
+    if file.take(MAGIC_BYTES).read_to_end(&mut start).is_err() || !picture::is_picture(&start) {
+        return Ok(None);
+    }
+    std::fs::read(path).map(Some).map_err(|e| Error::reading(path, e))
+}
+
+/// By so many bytes a picture is recognised.
+const MAGIC_BYTES: u64 = 64;
+
+/// Reads what a scene of a picture names; as [`load`].
+pub(super) fn load_picture(scene: &Scene, options: &SceneOptions, bytes: &[u8]) -> Result<LoadedPicture> {
+    begin(options)?;
+    let background = scene.background.as_deref().map(str::parse).transpose();
+    let background = background.map_err(|sentence: String| Error::input(format!("--background: {sentence}")))?;
+    let name = scene.source.to_string();
+    let picture = picture::read_bytes(&name, bytes, &Cut { background, ..Cut::default() })?;
+    let layers = scene.layers.iter().map(picture_layer).collect::<Result<Vec<_>>>()?;
+    let field = Field::load(&layers, scene.base, scene.clamp, &picture, Path::new(""))?;
+    let mut warnings = picture.warnings.clone();
+    warnings.extend_from_slice(&field.warnings);
+    if layers.is_empty() {
+        warnings.push("no importance was given, so the picture stays as it is; see --sphere and --regions".into());
+    }
+    tell(&warnings, options);
+    let regions = field.regions.as_ref().map(|r| Regions { names: r.names.clone(), of_vertex: r.of_pixel.clone() });
+    let flat =
+        Flat { name, size: picture.size, inside: picture.domain.clone(), importance: field.values.clone(), regions };
+    Ok(LoadedPicture { picture, field, flat, settings: settings(scene, options), warnings })
+}
+
+/// A layer as a picture takes it.
+fn picture_layer(layer: &Layer) -> Result<picture::importance::Layer> {
+    use picture::importance::Layer as Of;
+    Ok(match layer.clone() {
+        Layer::Sphere { centre: [x, y, _], radius, value } => Of::Disc { centre: [x, y], radius, value },
+        Layer::Image { path, range } => Of::Image { path, range },
+        Layer::Regions { regions, values, per_area } => Of::Regions { ids: regions, values, per_area },
+        _ => {
+            let sentence = "a picture has no vertices, so --attribute and --values without --regions say nothing about it; \
+                            use --image, --sphere or --regions";
+            return Err(Error::input(sentence));
+        }
+    })
+}
+
+/// From here on Ctrl-C asks rather than kills, and as many threads work as were asked for.
+fn begin(options: &SceneOptions) -> Result<()> {
+    if let Some(threads) = options.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
+        pool.build_global().map_err(|e| Error::Fault(format!("starting {threads} threads: {e}")))?;
+    }
+    cancel::listen();
+    Ok(())
+}
+
+fn tell(warnings: &[String], options: &SceneOptions) {
     if !options.quiet {
         warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
     }
-    let settings = Settings {
+}
+
+fn settings(scene: &Scene, options: &SceneOptions) -> Settings {
+    Settings {
         resolution: scene.resolution,
         fidelity: scene.fidelity,
         keys: scene.keys,
         reference: options.reference.map(Into::into),
-    };
-    Ok(Loaded { boundary, stack, settings, warnings })
+    }
 }
 
 /// The boundary a source names. A built-in scene brings its importance as the vertex attribute [`OWN`].

@@ -10,6 +10,7 @@
 //! | 3 | finished but not certified; the result lies next to its report |
 
 mod cancel;
+mod flat;
 mod inspect;
 mod load;
 pub mod options;

@@ -62,16 +62,17 @@ Examples:
   homunculus warp body.glb --regions region.csv --values worth.csv --growth growth.glb
   homunculus warp head.glb --image map.png:0.5..2 --base 0.8 --save-scene head.ron
   homunculus warp --scene head.ron --resolution 128 --fidelity 0.9
-  homunculus warp gallery:hand --growth hand.glb")]
+  homunculus warp gallery:hand --growth hand.glb
+  homunculus warp map.png --regions ids.png --values people.csv --per-area --resolution 256 --growth map.gif")]
 pub struct WarpOptions {
     /// What to warp and how.
     #[command(flatten)]
     pub scene: SceneOptions,
 
-    /// The warped mesh: .glb, .obj, .ply, .stl or .off
+    /// The warped mesh: .glb, .obj, .ply, .stl or .off; the warped picture: .png
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// The growth as an animation that plays in any glTF viewer: .glb
+    /// The growth as an animation that plays in any glTF viewer: .glb; of a picture also .apng or .gif
     #[arg(long, value_name = "GROWTH.glb")]
     pub growth: Option<PathBuf>,
     /// What was asked, achieved and proven: .json
@@ -81,6 +82,9 @@ pub struct WarpOptions {
     /// Length of the growth animation in seconds
     #[arg(long, value_name = "S", help_heading = "Growth", default_value = "4", value_parser = seconds, allow_negative_numbers = true)]
     pub seconds: f32,
+    /// Of a picture: pixels of the result along one of the input [default: 1]
+    #[arg(long, value_name = "S", help_heading = "Growth", value_parser = scale)]
+    pub scale: Option<f64>,
     /// Vertex colours to write [default: importance in the growth, original in the mesh]
     #[arg(long, help_heading = "Growth")]
     pub colour: Option<Colour>,
@@ -136,8 +140,12 @@ fn in_context(refusal: clap::Error) -> clap::Error {
     refusal.with_cmd(&CommandLine::command())
 }
 
+fn scale(text: &str) -> Result<f64, String> {
+    let scale = number(text)?;
+    if (0.01..=64.0).contains(&scale) { Ok(scale) } else { Err("0.01 to 64 can be had".into()) }
+}
+
 fn seconds(text: &str) -> Result<f32, String> {
     let seconds = number(text)? as f32;
     if (0.1..=3600.0).contains(&seconds) { Ok(seconds) } else { Err("0.1 to 3600 seconds can be had".into()) }
 }
-

@@ -9,9 +9,13 @@ use crate::{Error, Result};
 /// Formats a mesh can be written in.
 const MESH_EXTENSIONS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
 
+/// Formats the growth of a picture can be written in.
+const FLAT_GROWTH_EXTENSIONS: [&str; 4] = ["glb", "apng", "png", "gif"];
+
 /// The files to write.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Outputs {
+    /// The warped mesh or picture.
     pub mesh: Option<PathBuf>,
     pub growth: Option<PathBuf>,
     pub report: Option<PathBuf>,
@@ -23,16 +27,16 @@ impl Outputs {
     ///
     /// # Errors
     /// If a file could not be written at the end, or would overwrite an input or another output.
-    pub fn of(options: &WarpOptions, scene: &Scene) -> Result<Self> {
+    pub fn of(options: &WarpOptions, scene: &Scene, is_picture: bool) -> Result<Self> {
         let nothing_named = options.output.is_none() && options.growth.is_none() && options.report.is_none();
         let outputs = Self {
-            mesh: options.output.clone().or_else(|| nothing_named.then(|| default_mesh(&scene.source))),
+            mesh: options.output.clone().or_else(|| nothing_named.then(|| default_result(&scene.source, is_picture))),
             growth: options.growth.clone(),
             report: options.report.clone(),
             scene: options.scene.save_scene.clone(),
         };
-        check_extension(&outputs.mesh, "-o", &MESH_EXTENSIONS)?;
-        check_extension(&outputs.growth, "--growth", &["glb"])?;
+        check_extension(&outputs.mesh, "-o", if is_picture { &["png"] } else { &MESH_EXTENSIONS })?;
+        check_extension(&outputs.growth, "--growth", if is_picture { &FLAT_GROWTH_EXTENSIONS } else { &["glb"] })?;
         check_extension(&outputs.report, "--report", &["json"])?;
         check_extension(&outputs.scene, "--save-scene", &["ron"])?;
 
@@ -66,8 +70,8 @@ pub(super) fn check_places<'a>(scene: &Scene, paths: impl Iterator<Item = &'a Pa
     Ok(())
 }
 
-/// `NAME-warped.EXT` in the working directory, in the input's format where it can be written.
-fn default_mesh(source: &Source) -> PathBuf {
+/// `NAME-warped.EXT` in the working directory, in the input's format where it can be written; of a picture PNG.
+fn default_result(source: &Source, is_picture: bool) -> PathBuf {
     let (name, extension) = match source {
         Source::Gallery(name) => (name.clone(), None),
         Source::File(path) => {
@@ -75,7 +79,8 @@ fn default_mesh(source: &Source) -> PathBuf {
             (name, extension(path))
         }
     };
-    let extension = extension.filter(|e| MESH_EXTENSIONS.contains(&e.as_str())).unwrap_or_else(|| "glb".into());
+    let written = extension.filter(|e| MESH_EXTENSIONS.contains(&e.as_str())).unwrap_or_else(|| "glb".into());
+    let extension = if is_picture { "png".into() } else { written };
     // A gallery name comes from the user: only its last part may become a file name.
     let name = name.rsplit(['/', '\\']).next().unwrap_or("mesh").to_owned();
     PathBuf::from(format!("{name}-warped.{extension}"))

@@ -14,14 +14,14 @@ use crate::{Error, Result};
 /// The options that say what to warp and how.
 #[derive(Debug, Args)]
 pub struct SceneOptions {
-    /// Mesh (glTF, GLB, OBJ, PLY, STL, OFF), a scene file (RON) or a built-in model as gallery:NAME
+    /// Mesh (glTF, GLB, OBJ, PLY, STL, OFF), picture (PNG, JPEG, WebP), a scene file (RON) or a built-in model as gallery:NAME
     #[arg(value_name = "FILE|SCENE.ron|gallery:NAME", required_unless_present = "scene", value_parser = source)]
     pub source: Option<Source>,
 
-    /// Cells along the longest axis, 8 to 256 [default: 64]
+    /// Cells along the longest axis, 8 to 256, of a picture 8 to 512 [default: 64, of a picture 128]
     #[arg(long, value_name = "N", help_heading = "Method", allow_negative_numbers = true)]
     pub resolution: Option<u32>,
-    /// 0 keeps shape, 1 reaches the size asked for [default: 0.5]
+    /// 0 keeps shape, 1 reaches the size asked for [default: 0.5, of a picture 1]
     #[arg(long, value_name = "MU", help_heading = "Method", allow_negative_numbers = true)]
     pub fidelity: Option<f32>,
     /// Use the paper's own solver, for comparison only
@@ -34,8 +34,9 @@ pub struct SceneOptions {
     /// Importance where nothing else is said [default: 1]
     #[arg(long, value_name = "F", help_heading = "Importance", allow_negative_numbers = true)]
     pub base: Option<f32>,
-    /// A dab: importance F at X,Y,Z (units of the file), fading smoothly to nothing at RADIUS
-    #[arg(long, value_name = "X,Y,Z,RADIUS,F", help_heading = "Importance", allow_hyphen_values = true, value_parser = sphere)]
+    /// A dab: importance F at X,Y,Z (units of the file), fading smoothly to nothing at RADIUS; of a picture X,Y,RADIUS,F
+    /// in pixels from the upper left
+    #[arg(long, value_name = "X,Y,[Z,]RADIUS,F", help_heading = "Importance", allow_hyphen_values = true, value_parser = sphere)]
     pub sphere: Vec<Layer>,
     /// A vertex attribute of the file (see inspect), its least..greatest value mapped to LO..HI
     #[arg(long, value_name = "NAME[:LO..HI]", help_heading = "Importance", value_parser = attribute)]
@@ -43,12 +44,18 @@ pub struct SceneOptions {
     /// CSV with the columns vertex,importance (vertices counted from 0); after --regions: region,importance
     #[arg(long, value_name = "V.csv", help_heading = "Importance")]
     pub values: Vec<PathBuf>,
-    /// CSV with the columns vertex,region; the next --values says what each region is worth
+    /// CSV with the columns vertex,region, or a picture's ids as grey values; the next --values says what each is worth
     #[arg(long, value_name = "R.csv", help_heading = "Importance")]
     pub regions: Vec<PathBuf>,
-    /// A picture through the texture coordinates: black is LO, white is HI [default: 0.5..2]
+    /// A map through the texture coordinates, or as large as the picture: black is LO, white is HI [default: 0.5..2]
     #[arg(long, value_name = "MAP.png[:LO..HI]", help_heading = "Importance", value_parser = image)]
     pub image: Vec<Layer>,
+    /// Of a picture with --regions: the column `value` (population, say) shall become area, all together keeping theirs
+    #[arg(long, help_heading = "Importance")]
+    pub per_area: bool,
+    /// Of a picture: what is this colour and reaches the rim is no part of it, as in white,0.1
+    #[arg(long, value_name = "COLOUR,TOLERANCE", help_heading = "Method")]
+    pub background: Option<String>,
     /// Bring importance outside 0.05..20 into that range, rather than refuse what is not > 0
     #[arg(long, help_heading = "Importance")]
     pub clamp: bool,
@@ -113,13 +120,21 @@ impl SceneOptions {
         draft.resolution = self.resolution.unwrap_or(draft.resolution);
         draft.fidelity = self.fidelity.unwrap_or(draft.fidelity);
         draft.keys = self.keys.unwrap_or(draft.keys);
+        draft.background = self.background.clone().or(draft.background);
         Scene::new(draft)
     }
 }
 
+/// Cells along the longest side of a picture where nothing is said: about as fine as its detail, in a second or two.
+const PICTURE_RESOLUTION: u32 = 128;
+
 /// A scene with nothing but a source; a built-in one comes with settings that suit it.
 fn fresh(source: &Source) -> Draft {
     let mut draft = Draft::of(source.clone());
+    if source.is_picture() {
+        draft.resolution = PICTURE_RESOLUTION;
+        draft.fidelity = 1.0;
+    }
     if let Source::Gallery(name) = source
         && let Some(entry) = gallery::list().iter().find(|entry| entry.name == name)
     {
@@ -146,7 +161,10 @@ pub(super) fn layers(options: &SceneOptions, matches: &ArgMatches) -> Result<Vec
             return Err(Refusal::raw(ErrorKind::MissingRequiredArgument, sentence));
         };
         let (_, values) = values.remove(next);
-        layers.push((at, Layer::Regions { regions: regions.clone(), values: values.clone() }));
+        layers.push((
+            at,
+            Layer::Regions { regions: regions.clone(), values: values.clone(), per_area: options.per_area },
+        ));
     }
     layers.extend(values.into_iter().map(|(at, path)| (at, Layer::Values { path: path.clone() })));
     for (id, given) in [("sphere", &options.sphere), ("attribute", &options.attribute), ("image", &options.image)] {
@@ -165,8 +183,13 @@ pub(super) fn source(text: &str) -> Result<Source, String> {
 
 fn sphere(text: &str) -> Result<Layer, String> {
     let numbers: Vec<f64> = text.split(',').map(|n| number(n.trim())).collect::<Result<_, _>>()?;
-    let &[x, y, z, radius, value] = numbers.as_slice() else {
-        return Err(format!("five numbers X,Y,Z,RADIUS,F are needed, there are {}", numbers.len()));
+    let (x, y, z, radius, value) = match *numbers.as_slice() {
+        [x, y, z, radius, value] => (x, y, z, radius, value),
+        [x, y, radius, value] => (x, y, 0.0, radius, value),
+        _ => {
+            let sentence = "five numbers X,Y,Z,RADIUS,F are needed (for a picture four, X,Y,RADIUS,F)";
+            return Err(format!("{sentence}, there are {}", numbers.len()));
+        }
     };
     if radius <= 0.0 {
         return Err(format!("the radius {radius} is not greater than 0"));

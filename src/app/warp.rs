@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::load::{self, Loaded};
 use super::options::{Colour, WarpOrder};
 use super::outputs::Outputs;
-use super::{Verdict, cancel, progress, say};
+use super::{Verdict, cancel, flat, progress, say};
 use crate::boundary::Boundary;
 use crate::export::report::{self, Report};
 use crate::export::{self, GrowthFrame};
@@ -18,7 +18,15 @@ use crate::{Error, Result};
 pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     let options = &order.options;
     let scene = options.scene.scene(&order.layers)?;
-    let outputs = Outputs::of(options, &scene)?;
+    if let Some(bytes) = load::picture_bytes(&scene)? {
+        let outputs = Outputs::of(options, &scene, true)?;
+        let loaded = load::load_picture(&scene, &options.scene, &bytes)?;
+        return flat::run(options, &scene, &outputs, loaded);
+    }
+    if options.scale.is_some() || scene.background.is_some() {
+        return Err(Error::input("--scale and --background are for pictures, and this is a mesh; leave them out"));
+    }
+    let outputs = Outputs::of(options, &scene, false)?;
     let Loaded { boundary, stack, settings, warnings } = load::load(&scene, &options.scene)?;
 
     let watcher = progress::watcher(options.scene.quiet);
@@ -29,7 +37,7 @@ pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
         return Err(Error::Cancelled);
     }
 
-    let report = Report::of(&scene, &settings, &stack, &outcome, warnings);
+    let report = Report::of(&scene, &settings, stack.clamped(), &outcome, warnings);
     let written = write(&outputs, options.colour, options.seconds, &scene, &boundary, &outcome, &report)?;
     if !options.scene.quiet {
         say(&summary(&report, &written));
@@ -74,7 +82,7 @@ fn write(
 }
 
 /// One line for a person.
-fn summary(report: &Report, written: &[PathBuf]) -> String {
+pub(super) fn summary(report: &Report, written: &[PathBuf]) -> String {
     let certificate = &report.certificate;
     let verdict = if certificate.certified { "certified" } else { "NOT CERTIFIED" };
     let files = written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");

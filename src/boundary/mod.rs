@@ -115,6 +115,25 @@ impl Boundary {
         boundary
     }
 
+    /// The same with a PNG as its texture, shown as it is (unlit), alpha included.
+    pub(crate) fn with_texture(mut self, name: &str, png: Vec<u8>) -> Self {
+        let materials = &mut self.source.materials;
+        materials.images = vec![source::Image { name: name.into(), mime: "image/png".into(), bytes: png }];
+        materials.samplers = vec![serde_json::json!({ "wrapS": 33071, "wrapT": 33071 })];
+        materials.textures = vec![serde_json::json!({ "sampler": 0, "source": 0 })];
+        materials.materials = vec![serde_json::json!({
+            "name": name,
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicFactor": 0.0, "roughnessFactor": 1.0 },
+            "alphaMode": "BLEND",
+            "doubleSided": true,
+            "extensions": { "KHR_materials_unlit": {} },
+        })];
+        materials.extensions_used = vec!["KHR_materials_unlit".into()];
+        self.source.parts = vec![source::Part { object: source::NONE, material: 0, extensions: None }];
+        self.source.polygon_parts = vec![0; self.source.polygons.len()];
+        self
+    }
+
     /// `[vertices]` texture coordinates: the first one used by each vertex, `None` where it has none.
     ///
     /// `(0, 0)` is the upper left corner of the image and v grows downwards, as in glTF.

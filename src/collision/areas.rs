@@ -6,11 +6,13 @@
 //! reason, Gastner, Seguy and More 2018).
 
 use bevy::prelude::Component;
-use glam::Vec3A;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use crate::{
-    certificate::volume_ratios,
-    voxel::{Complex, Shares},
+    boundary::Boundary,
+    picture::pieces,
+    voxel::{Flat, Shares},
 };
 
 /// Iterations between two corrections: enough for the last one to be felt.
@@ -29,15 +31,6 @@ const MOST: f64 = 4.0;
 /// their neighbours off.
 const LEAST_CELLS: f64 = 2.0;
 
-/// The correction of one domain.
-#[derive(Component, Debug, Clone)]
-pub struct AreaCorrection {
-    /// `[regions]` what each asks for is multiplied by this, as area.
-    factors: Vec<f32>,
-    rounds: u32,
-    finished: bool,
-}
-
 /// A region's areas, in pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Areas {
@@ -49,27 +42,99 @@ pub struct Areas {
     pub achieved: f64,
 }
 
-/// `[regions]` areas in a state.
-pub fn region_areas(complex: &Complex, shares: &Shares, regions: usize, positions: &[Vec3A]) -> Vec<Areas> {
-    let ratios = volume_ratios(complex, positions);
-    let mut areas = vec![Areas::default(); regions];
-    for (cell, elements) in ratios.chunks(complex.dimension.elements().len()).enumerate() {
-        let ratio = elements.iter().map(|&r| f64::from(r)).sum::<f64>() / elements.len() as f64;
-        for share in shares.of(cell) {
-            if let Some(sum) = areas.get_mut(share.region as usize) {
-                sum.rest += f64::from(share.area);
-                sum.asked += f64::from(share.asked);
-                sum.achieved += ratio * f64::from(share.area);
+/// What regions have of the triangles that a picture is drawn on: borders run through triangles as they do through cells.
+#[derive(Debug, Clone, Default)]
+pub struct Pieces {
+    /// `[triangles + 1]` compressed rows.
+    start: Vec<u32>,
+    /// Region, and the part of the triangle's area it has.
+    list: Vec<(u32, f32)>,
+    /// `[regions]`, `achieved` left open.
+    areas: Vec<Areas>,
+}
+
+impl Pieces {
+    /// Cuts the triangles of a picture's flat mesh by pixels.
+    pub fn new(picture: &Flat, mesh: &Boundary) -> Self {
+        let Some(regions) = &picture.regions else { return Self::default() };
+        let mut areas = vec![Areas::default(); regions.names.len()];
+        let height = f64::from(picture.size.y);
+        let of_triangle: Vec<Vec<(u32, f64, f64)>> = mesh
+            .triangles
+            .par_iter()
+            .with_min_len(1024)
+            .map(|triangle| {
+                let at = triangle.map(|v| mesh.positions[v as usize]).map(|p| DVec2::new(p.x, height - p.y));
+                let mut shares: Vec<(u32, f64, f64)> = Vec::new();
+                pieces(at, picture.size, |pixel, area| {
+                    let region = regions.of_vertex[pixel];
+                    if region == u32::MAX || !picture.inside[pixel] {
+                        return;
+                    }
+                    let asked = area * f64::from(picture.importance[pixel]).powi(2);
+                    match shares.iter_mut().find(|s| s.0 == region) {
+                        Some(share) => (share.1, share.2) = (share.1 + area, share.2 + asked),
+                        None => shares.push((region, area, asked)),
+                    }
+                });
+                shares
+            })
+            .collect();
+        let (mut start, mut list) = (vec![0], Vec::new());
+        for (triangle, shares) in mesh.triangles.iter().zip(of_triangle) {
+            let whole = doubled_area(triangle.map(|v| mesh.positions[v as usize])) / 2.0;
+            for (region, area, asked) in shares {
+                areas[region as usize].rest += area;
+                areas[region as usize].asked += asked;
+                list.push((region, (area / whole) as f32));
+            }
+            start.push(list.len() as u32);
+        }
+        Self { start, list, areas }
+    }
+
+    /// `[regions]` areas with the mesh's vertices at these places, source units.
+    pub fn areas(&self, mesh: &Boundary, places: &[DVec3]) -> Vec<Areas> {
+        let mut areas = self.areas.clone();
+        for (t, triangle) in mesh.triangles.iter().enumerate().take(self.start.len().saturating_sub(1)) {
+            let shares = &self.list[self.start[t] as usize..self.start[t + 1] as usize];
+            if shares.is_empty() {
+                continue;
+            }
+            let whole = doubled_area(triangle.map(|v| places[v as usize])) / 2.0;
+            for &(region, part) in shares {
+                areas[region as usize].achieved += f64::from(part) * whole;
             }
         }
+        areas
     }
-    areas
+}
+
+/// Twice the area of a triangle of the plane.
+fn doubled_area([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).truncate().perp_dot((c - a).truncate())
+}
+
+/// The correction of one domain.
+#[derive(Component, Debug, Clone)]
+pub struct AreaCorrection {
+    pieces: Pieces,
+    /// `[regions]` what each asks for is multiplied by this, as area.
+    factors: Vec<f32>,
+    rounds: u32,
+    finished: bool,
 }
 
 impl AreaCorrection {
-    /// For so many regions.
-    pub fn new(regions: usize) -> Self {
-        Self { factors: vec![1.0; regions], rounds: 0, finished: false }
+    /// For a picture and the mesh it is drawn on.
+    pub fn new(picture: &Flat, mesh: &Boundary) -> Self {
+        let pieces = Pieces::new(picture, mesh);
+        Self { factors: vec![1.0; pieces.areas.len()], pieces, rounds: 0, finished: false }
+    }
+
+    /// What regions have of the mesh's triangles.
+    pub fn pieces(&self) -> &Pieces {
+        &self.pieces
     }
 
     /// Whether it is time for a correction at this iteration of λ = 1, or the state would be kept.
@@ -78,9 +143,10 @@ impl AreaCorrection {
     }
 
     /// Corrects what regions ask for: `[cells]` new importance, or nothing where areas are right or enough was tried.
-    pub fn correct(&mut self, complex: &Complex, shares: &Shares, positions: &[Vec3A]) -> Option<Vec<f32>> {
-        let cell = complex.grid.cell_size * complex.grid.cell_size;
-        let areas = region_areas(complex, shares, self.factors.len(), positions);
+    ///
+    /// `places`: where the mesh's vertices are, source units; `cell`: the area of a cell in pixels.
+    pub fn correct(&mut self, shares: &Shares, mesh: &Boundary, places: &[DVec3], cell: f64) -> Option<Vec<f32>> {
+        let areas = self.pieces.areas(mesh, places);
         let is_resolved = |a: &Areas| a.rest >= LEAST_CELLS * cell && a.asked > 0.0 && a.achieved > 0.0;
         let off = |a: &Areas| (a.achieved / a.asked - 1.0).abs();
         let is_good = areas.iter().filter(|a| is_resolved(a)).all(|a| off(a) < GOOD_ENOUGH);

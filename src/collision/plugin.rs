@@ -90,8 +90,9 @@ fn start(
     mut watch: ResMut<Stopwatch>,
 ) {
     for (entity, domain, Lattice(complex), importance) in &lattices {
-        if let Some(regions) = domain.picture.as_ref().and_then(|picture| picture.regions.as_ref()) {
-            commands.entity(entity).insert(AreaCorrection::new(regions.names.len()));
+        if let Some(picture) = domain.picture.as_ref().filter(|picture| picture.regions.is_some()) {
+            let correction = watch.time("grow", || AreaCorrection::new(picture, &domain.boundary));
+            commands.entity(entity).insert(correction);
         }
         let problem =
             watch.time("grow", || Problem::of_cells(complex, importance.cells.clone(), domain.settings.fidelity));
@@ -108,9 +109,11 @@ fn start(
 }
 
 type Corrected<'a> = (
+    &'a Domain,
     &'a Lattice,
     &'a PixelShares,
     &'a Warped,
+    &'a Shells,
     &'a mut CollisionProblem,
     &'a mut Growing,
     &'a mut Sizes,
@@ -119,16 +122,19 @@ type Corrected<'a> = (
 
 /// Regions of a picture that have not their area yet ask for more or less, and λ = 1 settles once more.
 fn correct_areas(mut domains: Query<Corrected>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), PixelShares(shares), warped, mut problem, mut growing, mut sizes, mut correction) in
-        &mut domains
-    {
-        if growing.0.at_end() && correction.is_due(growing.0.iteration(), growing.0.settled()) {
-            let corrected = watch.time("grow", || correction.correct(complex, shares, &warped.0));
-            if let Some(importance) = corrected {
-                problem.0.importance = importance;
-                sizes.0 = grow(complex, &problem.0, 1.0);
-                growing.0.again();
-            }
+    for (domain, lattice, shares, warped, shells, mut problem, mut growing, mut sizes, mut correction) in &mut domains {
+        if !growing.0.at_end() || !correction.is_due(growing.0.iteration(), growing.0.settled()) {
+            continue;
+        }
+        let Some(binding) = shells.0.iter().find_map(Shell::binding) else { continue };
+        let corrected = watch.time("grow", || {
+            let cell = lattice.0.grid.cell_size.powi(2);
+            correction.correct(&shares.0, &domain.boundary, &binding.apply(&warped.0), cell)
+        });
+        if let Some(importance) = corrected {
+            problem.0.importance = importance;
+            sizes.0 = grow(&lattice.0, &problem.0, 1.0);
+            growing.0.again();
         }
     }
 }

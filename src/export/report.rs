@@ -8,7 +8,8 @@ use serde_json::{Map, Value};
 
 use super::write_atomically;
 use crate::diagnostics::peak_memory_bytes;
-use crate::importance::Stack;
+use crate::picture::importance::Field;
+use crate::picture::{RegionArea, median_error, worst};
 use crate::scene::{Scene, memory_estimate};
 use crate::schedule::{Counts, DomainSummary, InputSummary, Outcome, Reference, Settings};
 use crate::{Error, Result};
@@ -32,6 +33,9 @@ pub struct Report {
     pub fidelity: FidelityReport,
     /// Conformal distortion, ≥ 1.
     pub distortion: DistortionReport,
+    /// Of a picture with regions: their areas.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub areas: Option<AreaReport>,
     /// Wall time by stage.
     pub seconds: Map<String, Value>,
     /// The most memory the process held, where the system tells.
@@ -177,9 +181,68 @@ pub struct DistortionReport {
     pub p99: f64,
 }
 
+/// Areas of a picture's regions, in pixels of the input.
+#[derive(Debug, Clone, Serialize)]
+pub struct AreaReport {
+    /// |achieved / asked − 1| of the worst region that is not `unresolved`.
+    pub worst: Option<WorstArea>,
+    /// Median of the same.
+    pub median_error: f64,
+    /// Regions smaller than two cells: they have no cell of their own to grow by. More `--resolution` helps.
+    pub unresolved: Vec<String>,
+    /// Each region.
+    pub regions: Vec<RegionArea>,
+}
+
+/// The region that misses its area most.
+#[derive(Debug, Clone, Serialize)]
+pub struct WorstArea {
+    /// Its name.
+    pub name: String,
+    /// |achieved / asked − 1|
+    pub error: f64,
+}
+
+/// A region of fewer cells than this is not resolved.
+const LEAST_CELLS: f64 = 2.0;
+
+impl AreaReport {
+    /// Of areas and the field they were asked by; `cell` is the area of a cell in pixels. Nothing without regions.
+    pub fn of(areas: &[RegionArea], field: &Field, domain: &[bool], cell: f64) -> Option<Self> {
+        let regions = field.regions.as_ref()?;
+        let mut pixels = vec![0_u32; regions.names.len()];
+        for (&region, _) in regions.of_pixel.iter().zip(domain).filter(|(_, inside)| **inside) {
+            if let Some(count) = pixels.get_mut(region as usize) {
+                *count += 1;
+            }
+        }
+        let is_small = |name: &String| {
+            let at = regions.names.iter().position(|n| n == name);
+            at.is_some_and(|k| f64::from(pixels[k]) < LEAST_CELLS * cell)
+        };
+        let (small, resolved): (Vec<_>, Vec<_>) = areas.iter().cloned().partition(|a| is_small(&a.name));
+        Some(Self {
+            worst: worst(&resolved).map(|a| WorstArea { name: a.name.clone(), error: a.error() }),
+            median_error: median_error(&resolved),
+            unresolved: small.into_iter().map(|a| a.name).collect(),
+            regions: areas.to_vec(),
+        })
+    }
+}
+
 impl Report {
+    /// Adds the areas of a picture's regions; sizes of regions are told by them.
+    pub fn take_areas(&mut self, areas: Option<AreaReport>) {
+        if let Some(names) = areas.as_ref().map(|a| a.unresolved.join(", ")).filter(|names| !names.is_empty()) {
+            self.warnings.push(format!(
+                "smaller than two cells, so the size asked for is not reached: {names}; raise --resolution"
+            ));
+        }
+        self.areas = areas;
+    }
+
     /// The report of a run.
-    pub fn of(scene: &Scene, settings: &Settings, stack: &Stack, outcome: &Outcome, warnings: Vec<String>) -> Self {
+    pub fn of(scene: &Scene, settings: &Settings, clamped: usize, outcome: &Outcome, warnings: Vec<String>) -> Self {
         Self {
             source: scene.source.to_string(),
             settings: SettingsReport {
@@ -202,9 +265,10 @@ impl Report {
             certificate: outcome.into(),
             fidelity: outcome.into(),
             distortion: outcome.into(),
+            areas: None,
             seconds: outcome.seconds.iter().map(|(stage, seconds)| ((*stage).into(), (*seconds).into())).collect(),
             peak_memory_bytes: peak_memory_bytes(),
-            clamped: stack.clamped(),
+            clamped,
             warnings,
             version: env!("CARGO_PKG_VERSION"),
         }

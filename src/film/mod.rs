@@ -6,7 +6,7 @@
 
 pub mod plugin;
 
-use glam::Vec3A;
+use glam::{DVec2, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
@@ -125,6 +125,11 @@ fn reached(
     guard(complex, shells, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
     let certificate = certify(complex, shells, &positions);
     Keyframe { lambda, positions, certificate }
+}
+
+/// `(1 − t) a + t b` of places in the plane.
+pub fn blend_places(a: &[DVec2], b: &[DVec2], t: f64) -> Vec<DVec2> {
+    a.par_iter().zip(b).with_min_len(CHUNK).map(|(a, b)| a.lerp(*b, t)).collect()
 }
 
 /// `(1 − t) a + t b`.

@@ -46,12 +46,16 @@ pub enum Layer {
         /// The table.
         path: PathBuf,
     },
-    /// Two CSV tables, `vertex,region` and `region,importance`; the vertices listed are set.
+    /// Two CSV tables, `vertex,region` and `region,importance`; the vertices listed are set. Of a picture the regions are a
+    /// picture of ids.
     Regions {
-        /// Which vertex belongs to which region.
+        /// Which vertex or pixel belongs to which region.
         regions: PathBuf,
         /// What each region is worth.
         values: PathBuf,
+        /// Of a picture: whether the table's column `value` shall become area.
+        #[serde(default)]
+        per_area: bool,
     },
     /// A picture through the texture coordinates: luminance 0..1 becomes `range`, transparency lets through what is below.
     Image {
@@ -69,7 +73,7 @@ impl Layer {
         match self {
             Self::Sphere { .. } | Self::Attribute { .. } => Vec::new(),
             Self::Values { path } | Self::Image { path, .. } => vec![path],
-            Self::Regions { regions, values } => vec![regions, values],
+            Self::Regions { regions, values, .. } => vec![regions, values],
         }
     }
 
@@ -79,7 +83,7 @@ impl Layer {
         match &mut self {
             Self::Sphere { .. } | Self::Attribute { .. } => {}
             Self::Values { path } | Self::Image { path, .. } => *path = f(path),
-            Self::Regions { regions, values } => {
+            Self::Regions { regions, values, .. } => {
                 *regions = f(regions);
                 *values = f(values);
             }

@@ -178,7 +178,10 @@ impl Stack {
                 let values = table::values(&scene_dir.join(path), vertices, &mut self.admission)?;
                 Ok(Ready::Vertices(logarithms(values)))
             }
-            Layer::Regions { regions, values } => {
+            Layer::Regions { per_area: true, .. } => {
+                Err(Error::input("--per-area is for pictures, and this is a mesh; leave it out"))
+            }
+            Layer::Regions { regions, values, .. } => {
                 let (regions, values) = (scene_dir.join(regions), scene_dir.join(values));
                 let (regions, values) = table::regions(&regions, &values, vertices, &mut self.admission)?;
                 self.regions = Some(regions);

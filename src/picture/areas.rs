@@ -86,7 +86,7 @@ pub fn median_error(areas: &[RegionArea]) -> f64 {
 }
 
 /// Gives each pixel that a triangle overlaps, and the area of the overlap.
-fn pieces(triangle: [DVec2; 3], size: UVec2, mut give: impl FnMut(usize, f64)) {
+pub(crate) fn pieces(triangle: [DVec2; 3], size: UVec2, mut give: impl FnMut(usize, f64)) {
     let (low, high) = bounds(triangle.into_iter());
     let first = low.floor().max(DVec2::ZERO).as_uvec2();
     let last = high.ceil().max(DVec2::ZERO).as_uvec2().min(size);

@@ -5,4 +5,4 @@ mod plan;
 mod settings;
 
 pub use plan::{FramePlan, Mix, plan};
-pub use settings::{Camera, Draft, Ease, Settings, View, MAX_FRAMES, MAX_SIDE, MAX_TITLE, MIN_SIDE};
+pub use settings::{Camera, Draft, Ease, MAX_FRAMES, MAX_SIDE, MAX_TITLE, MIN_SIDE, Settings, View};

@@ -93,7 +93,8 @@ pub(super) fn check(recipe: Recipe, path: &Path, _reel: &Reel) -> Result<()> {
     match asked {
         Ok(output) if String::from_utf8_lossy(&output.stdout).split_whitespace().any(|w| w == recipe.encoder) => Ok(()),
         Ok(_) => {
-            let sentence = format!("the ffmpeg installed here lacks {}, which .{extension} needs; take .mp4", recipe.encoder);
+            let sentence =
+                format!("the ffmpeg installed here lacks {}, which .{extension} needs; take .mp4", recipe.encoder);
             Err(Error::in_file(path, sentence))
         }
         Err(_) => {
