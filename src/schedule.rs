@@ -326,7 +326,7 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
     let CollisionProblem(problem) = get.get::<CollisionProblem>()?;
     let (importance, linear) = (get.get::<Importance>()?, get.get::<LinearSolution>()?);
 
-    let classic = watch.time("classic", || certify(complex, &mut shells[..1], &linear.0));
+    let classic = watch.time("classic", || certify(complex, &shells[..1], &linear.0));
     if domain.settings.reference.is_none() {
         watch.time("certificate", || film.mend(complex, &mut shells, &problem.importance));
     }

@@ -208,12 +208,12 @@ pub fn guard_step(
     guard::limit(positions, &mut proposed, |i| STEP_LIMIT * asked.radius[i].min(1.0));
     let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
     let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
-    let motion = positions
-        .par_iter()
-        .zip(&proposed)
-        .with_min_len(CHUNK)
-        .map(|(a, b)| (*a - *b).length())
-        .reduce(|| 0.0, f32::max);
+    let motion = largest_motion(positions, &proposed);
     *positions = proposed;
     (motion, guarded)
+}
+
+/// How far any node moves from one state to another, in cells.
+pub fn largest_motion(a: &[Vec3A], b: &[Vec3A]) -> f32 {
+    a.par_iter().zip(b).with_min_len(CHUNK).map(|(a, b)| a.distance_squared(*b)).reduce(|| 0.0, f32::max).sqrt()
 }

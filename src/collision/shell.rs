@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::{
     boundary::{Boundary, Sets},
     certificate::Surface,
+    film::blend,
     transfer::Binding,
     voxel::Complex,
 };
@@ -52,7 +53,7 @@ impl Shell {
         let welded = boundary.welded();
         let identities = boundary.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
         let rest = binding.apply_for_check(&complex.rest);
-        let mut surface = Surface::welded(boundary.triangles.clone(), identities, &rest);
+        let surface = Surface::welded(boundary.triangles.clone(), identities, &rest);
         let mut inherited = surface.crossings(&rest);
         let crossing_at_rest = inherited.len();
         for seed in 1..=NUDGES {
@@ -123,7 +124,7 @@ impl Shell {
     }
 
     /// Pairs that may cross in any state between two, node by node.
-    pub(super) fn near_pairs(&mut self, a: &[Vec3A], b: &[Vec3A]) -> Vec<(u32, u32)> {
+    pub(super) fn near_pairs(&self, a: &[Vec3A], b: &[Vec3A]) -> Vec<(u32, u32)> {
         match &self.binding {
             None => self.surface.near_pairs(a, b, 0.0),
             Some(binding) => {
@@ -165,14 +166,28 @@ impl Shell {
     }
 
     /// All crossing pairs of a state that were not there at rest. Exact.
-    pub fn crossings(&mut self, nodes: &[Vec3A]) -> Vec<(u32, u32)> {
-        let positions = match &self.binding {
-            None => Cow::Borrowed(nodes),
-            Some(binding) => Cow::Owned(binding.apply_for_check(nodes)),
-        };
-        let mut pairs = self.surface.crossings(&positions);
+    pub fn crossings(&self, nodes: &[Vec3A]) -> Vec<(u32, u32)> {
+        let mut pairs = self.surface.crossings(&self.positions(nodes));
         pairs.retain(|&pair| !self.is_inherited(pair));
         pairs
+    }
+
+    /// The same for the state at the end of a straight motion of the nodes, and whether the way there is clear: proven at
+    /// every instant, but for pairs of triangles on which no proof came out; these are looked at in `samples`, parts of
+    /// the way.
+    pub fn crossings_after(&self, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> (Vec<(u32, u32)>, bool) {
+        let end = self.positions(to);
+        let mut doubtful = self.surface.doubtful_pairs(&self.positions(from), &end);
+        doubtful.retain(|&pair| !self.is_inherited(pair));
+        if doubtful.is_empty() {
+            return (doubtful, true);
+        }
+        let crossing = self.surface.crossing_pairs(&doubtful, &end);
+        let clear = samples.iter().all(|&part| {
+            let between = blend(from, to, part);
+            self.surface.crossing_pairs(&doubtful, &self.positions(&between)).is_empty()
+        });
+        (crossing, clear)
     }
 
     /// The nodes that carry triangle `t`: where a crossing is.
