@@ -95,11 +95,8 @@ fn check_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Check {
 }
 
 /// The twelve edges of a cell along the axes, each as corners.
-const EDGES: [[[usize; 2]; 4]; 3] = [
-    [[0, 1], [2, 3], [4, 5], [6, 7]],
-    [[0, 2], [1, 3], [4, 6], [5, 7]],
-    [[0, 4], [1, 5], [2, 6], [3, 7]],
-];
+const EDGES: [[[usize; 2]; 4]; 3] =
+    [[[0, 1], [2, 3], [4, 5], [6, 7]], [[0, 2], [1, 3], [4, 6], [5, 7]], [[0, 4], [1, 5], [2, 6], [3, 7]]];
 
 /// Whether all elements of a cell are proven to be positive all the way. Never wrongly true.
 ///
@@ -107,17 +104,23 @@ const EDGES: [[[usize; 2]; 4]; 3] = [
 /// det B and det F have one sign; the set of such F is convex, so it is enough to look at both ends.
 #[inline]
 fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
-    let edge = |[a, b]: [usize; 2]| [from[b] - from[a], to[b] - to[a]];
-    let mean = EDGES.map(|along| along.into_iter().flat_map(edge).sum::<Vec3A>() * 0.125);
+    let mut edges = [[Vec3A::ZERO; 8]; 3];
+    for (edges, along) in edges.iter_mut().zip(EDGES) {
+        for (k, [a, b]) in along.into_iter().enumerate() {
+            edges[k] = from[b] - from[a];
+            edges[k + 4] = to[b] - to[a];
+        }
+    }
+    let mean = edges.map(|e| 0.125 * (((e[0] + e[1]) + (e[2] + e[3])) + ((e[4] + e[5]) + (e[6] + e[7]))));
     let middle = Mat3A::from_cols(mean[0], mean[1], mean[2]);
     if middle.determinant() < 1.0e-6 {
         return bernstein([from, to]);
     }
     let inverse = middle.inverse();
     let (mut deviation, mut longest) = (0.0_f32, 0.0_f32);
-    for (along, axis) in EDGES.into_iter().zip([Vec3A::X, Vec3A::Y, Vec3A::Z]) {
+    for (along, axis) in edges.into_iter().zip([Vec3A::X, Vec3A::Y, Vec3A::Z]) {
         let mut most = 0.0_f32;
-        for e in along.into_iter().flat_map(edge) {
+        for e in along {
             most = most.max((inverse * e - axis).length_squared());
             longest = longest.max(e.length_squared());
         }

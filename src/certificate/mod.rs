@@ -87,12 +87,12 @@ pub fn certify(complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Cert
 }
 
 /// Parts of a motion that are looked at where no proof comes out, the end left out.
-const SAMPLES: [f32; 3] = [0.25, 0.5, 0.75];
+const SAMPLES: [f32; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
 
 /// Checks a state like [`certify`], and the straight way to it from a valid one: whether every blend of the two is valid.
 ///
 /// Blends are proven at every instant: elements and pairs of faces on which no proof comes out are looked at, exactly,
-/// at a quarter, half and three quarters of the way. Of bodies within each other only these parts are looked at.
+/// at every eighth of the way. Of bodies within each other only these parts are looked at.
 pub fn certify_way(complex: &Complex, shells: &[Shell], from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
     let ((elements, unfolded), found): (_, Vec<_>) = rayon::join(
         || elements::check_way(complex, from, to, &SAMPLES),

@@ -115,8 +115,7 @@ impl Normals {
         let largest = edges.iter().flatten().fold(DVec3::ZERO, |m, e| m.max(e.abs())).max_element();
         let [[u, v], [x, y]] = [edges[0], edges[ENDS - 1]];
         let start = u.cross(v);
-        let coefficients =
-            if ENDS == 1 { [start; 3] } else { [start, 0.5 * (u.cross(y) + x.cross(v)), x.cross(y)] };
+        let coefficients = if ENDS == 1 { [start; 3] } else { [start, 0.5 * (u.cross(y) + x.cross(v)), x.cross(y)] };
         Self { coefficients, largest }
     }
 
@@ -150,4 +149,61 @@ fn is_seen_whole(fan: &[(u32, u8)], triangles: &[[u32; 3]], normals: &[Normals],
         turns += u32::from(a < 0.0 && b > 0.0);
     }
     turns == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::Surface;
+
+    /// A fan of `count` triangles around the origin that goes around `turns` times, its ring climbing with the angle but
+    /// for the last step, which leads back.
+    fn fan(count: u32, turns: f32) -> (Vec<[u32; 3]>, Vec<Vec3A>) {
+        let ring = (0..count).map(|k| {
+            let part = k as f32 / count as f32;
+            let (sin, cos) = (std::f32::consts::TAU * turns * part + 0.1).sin_cos();
+            Vec3A::new(cos, sin, 0.3 + 0.2 * part)
+        });
+        let positions = std::iter::once(Vec3A::ZERO).chain(ring).collect();
+        ((0..count).map(|k| [0, 1 + k, 1 + (k + 1) % count]).collect(), positions)
+    }
+
+    fn is_proven(triangles: &[[u32; 3]], from: &[Vec3A], to: &[Vec3A]) -> [bool; 2] {
+        let stars = Stars::new(triangles);
+        [stars.proven(triangles, [from])[0], stars.proven(triangles, [from, to])[0]]
+    }
+
+    #[test]
+    fn a_fan_around_once_is_proven_also_while_it_opens() {
+        let (triangles, positions) = fan(8, 1.0);
+        let opened: Vec<Vec3A> = positions.iter().map(|p| *p * Vec3A::new(1.0, 2.0, -1.0)).collect();
+        assert_eq!(is_proven(&triangles, &positions, &opened), [true, true]);
+        assert!(Surface::new(triangles, &positions).crossings(&positions).is_empty());
+    }
+
+    #[test]
+    fn sabotage_a_fan_around_twice_or_turned_over_is_not_proven() {
+        let (triangles, positions) = fan(8, 2.0);
+        assert_eq!(is_proven(&triangles, &positions, &positions), [false, false]);
+        let surface = Surface::new(triangles, &positions);
+        let exact: Vec<DVec3> = positions.iter().map(|p| p.as_dvec3()).collect();
+        assert!(!surface.crossings(&positions).is_empty());
+        assert_eq!(surface.crossings(&positions), surface.crossings_by_brute_force(&exact));
+
+        // Sound at both ends, flat on a line half-way.
+        let (triangles, positions) = fan(8, 1.0);
+        let over: Vec<Vec3A> = positions.iter().map(|p| *p * Vec3A::new(1.0, -1.0, 1.0)).collect();
+        assert_eq!(is_proven(&triangles, &positions, &over), [true, false]);
+    }
+
+    #[test]
+    fn what_is_no_closed_fan_is_not_proven() {
+        let (triangles, positions) = fan(8, 1.0);
+        assert_eq!(is_proven(&triangles[..7], &positions, &positions), [false, false]);
+        let mut flipped = triangles.clone();
+        flipped[3].swap(1, 2);
+        assert_eq!(is_proven(&flipped, &positions, &positions), [false, false]);
+        let twice = [triangles.clone(), triangles].concat();
+        assert_eq!(is_proven(&twice, &positions, &positions), [false, false]);
+    }
 }

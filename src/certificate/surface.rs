@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    motion::{Moving, stay_apart},
+    motion::{HALVINGS, Moving, stay_apart},
     predicates::{Triangle, triangles_cross},
     star::Stars,
     tree::{Bounds, Tree},
@@ -111,22 +111,25 @@ impl Surface {
     /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart all the way of a straight
     /// motion of the corners. Few, where nothing crosses.
     pub fn doubtful_pairs(&self, from: &[Vec3A], to: &[Vec3A]) -> Vec<(u32, u32)> {
+        self.not_apart(self.unproven_pairs([from, to]), [from, to], HALVINGS)
+    }
+
+    /// Sorts pairs and leaves out those that some direction proves apart.
+    fn not_apart(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2], halvings: u32) -> Vec<(u32, u32)> {
         let moving = |t: u32| -> Moving {
             let corners = self.triangles[t as usize];
-            [from, to].map(|p| corners.map(|v| p[v as usize].as_dvec3()))
+            ends.map(|p| corners.map(|v| p[v as usize].as_dvec3()))
         };
-        let near = self.unproven_pairs([from, to]);
-        let mut doubtful: Vec<(u32, u32)> = near
-            .par_iter()
+        let mut left: Vec<(u32, u32)> = pairs
+            .into_par_iter()
             .with_min_len(PAIRS_PER_TASK / 8)
-            .filter(|&&(s, t)| {
-                let ids = [s, t].map(|t| self.identities[t as usize]);
-                !stay_apart(&moving(s), &moving(t), ids[0], ids[1])
+            .filter(|&(s, t)| {
+                let [s_ids, t_ids] = [s, t].map(|t| self.identities[t as usize]);
+                !stay_apart(&moving(s), &moving(t), s_ids, t_ids, halvings)
             })
-            .copied()
             .collect();
-        doubtful.sort_unstable();
-        doubtful
+        left.par_sort_unstable();
+        left
     }
 
     /// Triangle `t` in a state.
@@ -167,9 +170,8 @@ impl Surface {
 
     /// All crossing pairs of a state, sorted, each as (lower, higher). Exact.
     pub fn crossings(&self, positions: &[Vec3A]) -> Vec<(u32, u32)> {
-        let mut crossing = self.crossing_pairs(&self.unproven_pairs([positions]), positions);
-        crossing.sort_unstable();
-        crossing
+        let doubtful = self.not_apart(self.unproven_pairs([positions]), [positions; 2], 0);
+        self.crossing_pairs(&doubtful, positions)
     }
 
     /// The same by comparing every pair, for tests and for whoever does not trust the tree.

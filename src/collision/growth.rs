@@ -15,7 +15,7 @@ pub const LEAST_STEPS: usize = 20;
 const ITERATIONS_PER_STEP: [u32; 2] = [2, 4];
 
 /// Iterations of a leap to a keyframe.
-const ITERATIONS_PER_LEAP: u32 = 3;
+const ITERATIONS_PER_LEAP: u32 = 2;
 
 /// A leap takes at most this much relative size change at once, as `ln` of the largest factor.
 const LN_SIZE_PER_LEAP: f32 = 0.4;
@@ -29,6 +29,9 @@ const HURRIED_ITERATIONS: u32 = 40;
 
 /// Iterations at λ = 1 at least.
 const LEAST_SETTLING: u32 = 8;
+
+/// The same at the end of a leap, which starts nearer: at least and at most.
+const LEAP_SETTLING: [u32; 2] = [4, 8];
 
 /// At λ = 1 the state is settled when no node moves further than this in an iteration, in cells.
 const SETTLED_MOTION: f32 = 0.02;
@@ -160,11 +163,11 @@ impl Growth {
     /// Whether the state at this λ is as good as it gets: time for a keyframe.
     pub fn settled(&self) -> bool {
         if self.step + 1 < self.steps.len() {
-            let enough =
-                if self.leaps { ITERATIONS_PER_LEAP } else { ITERATIONS_PER_STEP[usize::from(self.is_key())] };
+            let enough = if self.leaps { ITERATIONS_PER_LEAP } else { ITERATIONS_PER_STEP[usize::from(self.is_key())] };
             self.iteration >= enough
         } else {
-            self.iteration >= self.patience || (self.iteration >= LEAST_SETTLING && self.motion < SETTLED_MOTION)
+            let [least, most] = if self.leaps { LEAP_SETTLING } else { [LEAST_SETTLING, self.patience] };
+            self.iteration >= most || (self.iteration >= least && self.motion < SETTLED_MOTION)
         }
     }
 

@@ -40,6 +40,9 @@ const GLOBAL_STEPS: [u32; 2] = [1, 2];
 /// a wall of one cell is not skipped by one.
 const STEP_LIMIT: f32 = 0.5;
 
+/// How near pairs are kept for the iterations of a leap, in radii.
+const REACH: f32 = 1.5;
+
 /// The constant part of the collision optimization: what depends on complex and importance alone.
 #[derive(Debug, Clone)]
 pub struct Problem {
@@ -120,6 +123,11 @@ pub fn local_step(
 /// Contact: pairs of boundary nodes that are too close now.
 pub fn contact_step(complex: &Complex, problem: &Problem, asked: &Asked, positions: &[Vec3A]) -> Contacts {
     contact::find(complex, &problem.boundary_nodes, &asked.radius, positions)
+}
+
+/// Pairs of boundary nodes that may come too close within a few iterations.
+pub fn near_step(complex: &Complex, problem: &Problem, asked: &Asked, positions: &[Vec3A]) -> Vec<(u32, u32)> {
+    contact::near(complex, &problem.boundary_nodes, &asked.radius, positions, REACH)
 }
 
 /// Global step: where the nodes would like to go. Returns the proposed positions and the force left before the step

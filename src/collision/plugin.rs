@@ -5,8 +5,8 @@ use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Growth, Guarded, Problem, Shell, contact_step, global_step, grow, guard_step, largest_motion,
-    local_step,
+    Asked, Contacts, Growth, Guarded, Problem, Shell, contact, contact_step, global_step, grow, guard_step,
+    largest_motion, local_step, near_step,
 };
 use crate::{
     diagnostics::Stopwatch,
@@ -54,6 +54,8 @@ pub struct Warped(pub Vec<Vec3A>);
 pub struct Leap {
     /// `[nodes]` where it is now; V'' stays at the last keyframe meanwhile.
     pub positions: Vec<Vec3A>,
+    /// Pairs of boundary nodes that were near each other when it began.
+    pub near: Vec<(u32, u32)>,
     /// λ and `[nodes]` positions of the keyframe before the last.
     pub before: Option<(f32, Vec<Vec3A>)>,
 }
@@ -123,10 +125,7 @@ fn grow_sizes(mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &mut Si
 }
 
 /// Begins a leap where the last two keyframes point; the first one on the way to the linear solution.
-fn leap(
-    mut domains: Query<(&Lattice, &LinearSolution, &Growing, &Warped, &mut Leap)>,
-    mut watch: ResMut<Stopwatch>,
-) {
+fn leap(mut domains: Query<(&Lattice, &LinearSolution, &Growing, &Warped, &mut Leap)>, mut watch: ResMut<Stopwatch>) {
     for (Lattice(complex), LinearSolution(linear), Growing(growth), Warped(warped), mut leap) in &mut domains {
         if growth.done() || !growth.is_new_step() || !growth.leaps() {
             continue;
@@ -180,29 +179,29 @@ fn fit_cells(mut domains: Query<Fitted>, mut watch: ResMut<Stopwatch>) {
 }
 
 fn find_contacts(
-    mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Sizes, &Warped, &Leap, &mut Touching)>,
+    mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Sizes, &Warped, &mut Leap, &mut Touching)>,
     mut watch: ResMut<Stopwatch>,
 ) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), sizes, warped, leap, mut touching) in
+    for (Lattice(complex), CollisionProblem(problem), Growing(growth), Sizes(sizes), warped, mut leap, mut touching) in
         &mut domains
     {
-        if !growth.done() {
-            let positions = present(growth, warped, leap);
-            touching.0 = watch.time("contact", || contact_step(complex, problem, &sizes.0, positions));
+        if growth.done() {
+            continue;
         }
+        touching.0 = watch.time("contact", || {
+            if !growth.leaps() {
+                return contact_step(complex, problem, sizes, &warped.0);
+            }
+            if growth.is_new_step() {
+                leap.near = near_step(complex, problem, sizes, &leap.positions);
+            }
+            contact::among(complex, &leap.near, &sizes.radius, &leap.positions)
+        });
     }
 }
 
-type Placed<'a> = (
-    &'a Lattice,
-    &'a CollisionProblem,
-    &'a Growing,
-    &'a Warped,
-    &'a Leap,
-    &'a Targets,
-    &'a Touching,
-    &'a mut Proposed,
-);
+type Placed<'a> =
+    (&'a Lattice, &'a CollisionProblem, &'a Growing, &'a Warped, &'a Leap, &'a Targets, &'a Touching, &'a mut Proposed);
 
 fn propose(mut domains: Query<Placed>, mut watch: ResMut<Stopwatch>) {
     for (Lattice(complex), CollisionProblem(problem), Growing(growth), warped, leap, targets, touching, mut proposed) in

@@ -30,11 +30,7 @@ impl Plugin for FilmPlugin {
 
 type Unfilmed = (With<Growing>, Without<Reel>);
 
-fn open(
-    mut commands: Commands,
-    domains: Query<(Entity, &Lattice, &Shells), Unfilmed>,
-    mut watch: ResMut<Stopwatch>,
-) {
+fn open(mut commands: Commands, domains: Query<(Entity, &Lattice, &Shells), Unfilmed>, mut watch: ResMut<Stopwatch>) {
     for (entity, Lattice(complex), shells) in &domains {
         let mut film = Film::default();
         let certificate = watch.time("certificate", || certify(complex, &shells.0, &complex.rest));
@@ -55,7 +51,8 @@ type Filmed<'a> = (
 );
 
 fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), sizes, mut growing, mut warped, mut shells, mut reel, mut at_risk, mut leap) in &mut domains {
+    for (Lattice(complex), sizes, mut growing, mut warped, mut shells, mut reel, mut at_risk, mut leap) in &mut domains
+    {
         if growing.0.done() || !growing.0.settled() {
             continue;
         }
@@ -89,12 +86,7 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
             certificate = draw_back(complex, &sizes.0.size, shells, film, warped, &mut watch);
         }
         leap.before = film.keyframes().last().map(|k| (k.lambda, k.positions.clone()));
-        film.push(Keyframe {
-            lambda: growing.0.lambda(),
-            positions: warped.clone(),
-            certificate,
-            way_is_clear: false,
-        });
+        film.push(Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate, way_is_clear: false });
         growing.0.advance();
     }
 }
