@@ -144,7 +144,7 @@ fn measure_all(bench: &mut Bench, subject: &Subject) {
             "certificate",
             case,
             || midway.shells.clone(),
-            |all| certify(complex, &mut all[..shells], &midway.positions),
+            |all| certify(complex, &all[..shells], &midway.positions),
         );
     }
 }

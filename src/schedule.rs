@@ -383,7 +383,7 @@ fn solved(world: &mut World, entity: Entity) -> Option<Solved> {
     let CollisionProblem(problem) = get.get::<CollisionProblem>()?;
     let (importance, linear) = (get.get::<Importance>()?, get.get::<LinearSolution>()?);
 
-    let classic = watch.time("classic", || certify(complex, &mut shells[..1], &linear.0));
+    let classic = watch.time("classic", || certify(complex, &shells[..1], &linear.0));
     let mut binding = binding.clone();
     if domain.settings.reference.is_none() {
         watch.time("certificate", || film.mend(complex, &mut shells, &problem.importance));

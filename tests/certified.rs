@@ -56,7 +56,7 @@ fn crossings_between(boundary: &Boundary, frames: &[schedule::Frame]) -> usize {
     let welded = boundary.welded();
     let identities = boundary.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
     let rest: Vec<Vec3A> = frames[0].positions.iter().map(|p| p.as_vec3a()).collect();
-    let mut surface = Surface::welded(boundary.triangles.clone(), identities, &rest);
+    let surface = Surface::welded(boundary.triangles.clone(), identities, &rest);
     let blends = frames.windows(2).flat_map(|pair| [0.25, 0.5, 0.75, 1.0].map(|t| (pair, t)));
     blends
         .map(|(pair, t)| {

@@ -132,8 +132,10 @@ pub fn distortion(complex: &Complex, positions: &[Vec3A]) -> Distortion {
 }
 
 fn quantiles(values: &mut [f64], at: [f64; 3]) -> [f64; 3] {
-    values.par_sort_unstable_by(f64::total_cmp);
-    at.map(|q| values.get(((values.len().max(1) - 1) as f64 * q).round() as usize).copied().unwrap_or(0.0))
+    at.map(|q| {
+        let rank = ((values.len().max(1) - 1) as f64 * q).round() as usize;
+        if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(rank, f64::total_cmp).1 }
+    })
 }
 
 /// Eigenvalues of the upper left 2 × 2 block of a symmetric matrix, least first.

@@ -7,27 +7,34 @@
 //!
 //! # Practice
 //! Exact signs (crate `robust`) behind an interval filter; boxes in a tree that is refitted. Touching counts as crossing.
-//! The one way to make a [`Certificate`] is [`certify`].
+//! Most is proven at once and without exact signs: whole cells by how little they differ from a linear map, the
+//! triangles around a vertex by being seen side by side, and both also for all blends of two states. The one way to make
+//! a [`Certificate`] is to check the state, by [`certify`] or together with the way to it by [`certify_way`].
 
+mod elements;
 mod fidelity;
+mod motion;
 mod predicates;
+mod star;
 mod surface;
 mod tree;
 
+pub(crate) use elements::flat_stays_positive;
 pub use fidelity::{Distortion, Fidelity, RegionFidelity, distortion, fidelity, volume_ratios};
 pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};
 pub use surface::Surface;
-pub use tree::{Bounds, Tree};
+pub use tree::{Bounds, Posed, Tree};
 
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
     collision::Shell,
-    voxel::{Complex, Dimension, KUHN},
+    film::blend,
+    voxel::{Complex, Dimension},
 };
 
-/// What the check of one state found. Only [`certify`] makes one.
+/// What the check of one state found. Only [`certify`] and [`certify_way`] make one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     inverted: usize,
@@ -75,20 +82,47 @@ impl Certificate {
     }
 }
 
-/// Cells per parallel task.
-const CELLS_PER_TASK: usize = 512;
-
 /// Checks a state: all elements, and all pairs of faces of the given shells (the first is the complex's skin).
-pub fn certify(complex: &Complex, shells: &mut [Shell], positions: &[Vec3A]) -> Certificate {
-    let ((inverted, least, worst_cell), counts): (_, Vec<Vec<(u32, u32)>>) = rayon::join(
-        || match complex.dimension {
-            Dimension::Two => flat_elements(complex, positions),
-            Dimension::Three => elements(complex, positions),
-        },
-        || shells.par_iter_mut().map(|s| s.crossings(positions)).collect(),
+pub fn certify(complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Certificate {
+    let (elements, crossings): (_, Vec<_>) = rayon::join(
+        || elements::check(complex, positions),
+        || shells.par_iter().map(|s| s.crossings(positions)).collect(),
     );
-    let inverted = inverted + shells.iter().map(|s| s.inverted(positions).len()).sum::<usize>();
-    let crossing_at = shells.iter().zip(&counts).find_map(|(shell, pairs)| {
+    conclude(complex, shells, positions, elements, &crossings)
+}
+
+/// Parts of a motion that are looked at where no proof comes out, the end left out.
+const SAMPLES: [f32; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
+
+/// Checks a state like [`certify`], and the straight way to it from a valid one: whether every blend of the two is valid.
+///
+/// Blends are proven at every instant: elements and pairs of faces on which no proof comes out are looked at, exactly,
+/// at every eighth of the way. Of bodies within each other only these parts are looked at.
+pub fn certify_way(complex: &Complex, shells: &[Shell], from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
+    let ((elements, unfolded), found): (_, Vec<_>) = rayon::join(
+        || elements::check_way(complex, from, to, &SAMPLES),
+        || shells.par_iter().map(|s| s.crossings_after(from, to, &SAMPLES)).collect(),
+    );
+    let (crossings, clear): (Vec<_>, Vec<bool>) = found.into_iter().unzip();
+    let clear = unfolded
+        && clear.into_iter().all(|clear| clear)
+        && (complex.solids < 2 || SAMPLES.iter().all(|&t| enclosed_solids(complex, &blend(from, to, t)).is_empty()));
+    let clear = clear && shells.iter().all(|s| s.stays_unfolded(from, to, &SAMPLES));
+    let certificate = conclude(complex, shells, to, elements, &crossings);
+    let clear = clear && certificate.certified();
+    (certificate, clear)
+}
+
+/// What the findings on a state come to. `crossings` are by shell.
+fn conclude(
+    complex: &Complex,
+    shells: &[Shell],
+    positions: &[Vec3A],
+    elements: elements::Check,
+    crossings: &[Vec<(u32, u32)>],
+) -> Certificate {
+    let inverted = shells.iter().map(|s| s.inverted(positions).len()).sum::<usize>();
+    let crossing_at = shells.iter().zip(crossings).find_map(|(shell, pairs)| {
         let &(triangle, _) = pairs.first()?;
         Some(shell.nodes_of_triangle(triangle))
     });
@@ -96,77 +130,19 @@ pub fn certify(complex: &Complex, shells: &mut [Shell], positions: &[Vec3A]) -> 
         let sum: DVec3 = nodes.iter().map(|&i| positions[i as usize].as_dvec3()).sum();
         complex.grid.source_from_lattice(sum / nodes.len().max(1) as f64)
     };
-    let worst = match (crossing_at, worst_cell) {
+    let worst = match (crossing_at, elements.smallest) {
         (Some(nodes), _) => Some(at_nodes(&nodes)),
         (None, Some(cell)) => Some(at_nodes(&complex.corners[cell])),
         (None, None) => None,
     };
     Certificate {
-        inverted,
-        crossings: counts.first().map_or(0, Vec::len),
+        inverted: elements.inverted + inverted,
+        crossings: crossings.first().map_or(0, Vec::len),
         enclosed: enclosed_solids(complex, positions).len(),
-        surface_crossings: counts.iter().skip(1).map(Vec::len).sum(),
-        min_volume_ratio: least,
+        surface_crossings: crossings.iter().skip(1).map(Vec::len).sum(),
+        min_volume_ratio: elements.least,
         worst,
     }
-}
-
-/// Number of elements that are not positive, the least volume ratio, and its cell. Exact in the number.
-fn elements(complex: &Complex, positions: &[Vec3A]) -> (usize, f64, Option<usize>) {
-    complex
-        .corners
-        .par_chunks(CELLS_PER_TASK)
-        .enumerate()
-        .map(|(chunk, cells)| {
-            let mut inverted = 0;
-            let mut least = (f64::INFINITY, None);
-            for (k, corners) in cells.iter().enumerate() {
-                let at = corners.map(|c| positions[c as usize].as_dvec3());
-                // Every element starts at corner 0. The permanent of an element is at most six cubes of the largest
-                // coordinate, so this is the filter of `orientation` once for the whole cell, wider.
-                let from_first = at.map(|p| p - at[0]);
-                let largest = from_first.iter().fold(DVec3::ZERO, |m, e| m.max(e.abs())).max_element();
-                let bound = 1.0e-13 * (largest * largest * largest);
-                for [a, b, c, d] in KUHN {
-                    let volume = from_first[b].dot(from_first[c].cross(from_first[d]));
-                    let is_clear = volume > bound;
-                    if !volume.is_finite() || (!is_clear && orientation(at[a], at[b], at[c], at[d]) <= 0) {
-                        inverted += 1;
-                    }
-                    if volume < least.0 {
-                        least = (volume, Some(chunk * CELLS_PER_TASK + k));
-                    }
-                }
-            }
-            (inverted, least.0, least.1)
-        })
-        .reduce(
-            || (0, f64::INFINITY, None),
-            |a, b| {
-                // Ties go to the first cell, so that the answer does not depend on threads.
-                let first = (a.1, a.2.unwrap_or(usize::MAX)) <= (b.1, b.2.unwrap_or(usize::MAX));
-                let (least, cell) = if first { (a.1, a.2) } else { (b.1, b.2) };
-                (a.0 + b.0, least, cell)
-            },
-        )
-}
-
-/// The same in the plane, where the sign of every element is taken from the exact predicate.
-fn flat_elements(complex: &Complex, positions: &[Vec3A]) -> (usize, f64, Option<usize>) {
-    let dimension = complex.dimension;
-    let mut inverted = 0;
-    let mut least = (f64::INFINITY, None);
-    for (cell, corners) in complex.corners.iter().enumerate() {
-        for element in dimension.elements() {
-            let at = element.map(|c| positions[corners[c] as usize].as_dvec3());
-            let area = (at[1] - at[0]).truncate().perp_dot((at[2] - at[0]).truncate());
-            inverted += usize::from(!area.is_finite() || !is_positive(dimension, at));
-            if area < least.0 {
-                least = (area, Some(cell));
-            }
-        }
-    }
-    (inverted, least.0, least.1)
 }
 
 /// Solids that lie inside another one: one point of each is looked at, which tells for all of it as long as no skins

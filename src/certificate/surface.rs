@@ -6,7 +6,9 @@ use rayon::prelude::*;
 use crate::voxel::Dimension;
 
 use super::{
+    motion::{HALVINGS, Moving, stay_apart},
     predicates::{Triangle, segments_cross, triangles_cross},
+    star::Stars,
     tree::{Bounds, Tree},
 };
 
@@ -72,6 +74,7 @@ pub struct Surface {
     /// `[triangles]` identities of the corners: equal where corners are the same point (welded).
     pub identities: Vec<[u32; 3]>,
     tree: Tree,
+    stars: Stars,
 }
 
 impl Surface {
@@ -90,17 +93,57 @@ impl Surface {
     pub fn welded(triangles: Vec<[u32; 3]>, identities: Vec<[u32; 3]>, rest: &[Vec3A]) -> Self {
         let centres: Vec<Vec3A> =
             triangles.iter().map(|t| t.map(|v| rest[v as usize]).iter().sum::<Vec3A>() / 3.0).collect();
-        Self { dimension: Dimension::Three, tree: Tree::new(&centres), triangles, identities }
+        let (dimension, stars) = (Dimension::Three, Stars::new(&identities));
+        Self { dimension, tree: Tree::new(&centres), stars, triangles, identities }
     }
 
-    /// Pairs of triangles whose boxes meet in any blend of the states `a` and `b`.
-    pub fn near_pairs(&mut self, a: &[Vec3A], b: &[Vec3A], margin: f32) -> Vec<(u32, u32)> {
-        let triangles = &self.triangles;
-        self.tree.refit(|t| {
-            let corners = triangles[t as usize];
-            Bounds::of(corners.iter().flat_map(|&v| [a[v as usize], b[v as usize]])).grown(margin)
-        });
-        self.tree.pairs()
+    /// Pairs of triangles whose boxes meet where each corner is anywhere between its places in `a` and `b`.
+    pub fn near_pairs(&self, a: &[Vec3A], b: &[Vec3A], margin: f32) -> Vec<(u32, u32)> {
+        let bounds = |t: u32| {
+            let corners = self.triangles[t as usize];
+            [Bounds::of(corners.iter().flat_map(|&v| [a[v as usize], b[v as usize]])).grown(margin)]
+        };
+        self.tree.pairs(bounds, |_, _| true)
+    }
+
+    /// Pairs of triangles, each as (lower, higher), that neither their boxes nor a star around a common corner prove
+    /// apart, at one state or all the way between two.
+    fn unproven_pairs<const ENDS: usize>(&self, ends: [&[Vec3A]; ENDS]) -> Vec<(u32, u32)> {
+        if self.dimension == Dimension::Two {
+            let [from, to] = [ends[0], ends[ENDS - 1]];
+            return self.near_pairs(from, to, 0.0).into_iter().map(|(s, t)| (s.min(t), s.max(t))).collect();
+        }
+        let proven = self.stars.proven(&self.triangles, ends);
+        let bounds = |t: u32| ends.map(|p| Bounds::of(self.triangles[t as usize].map(|v| p[v as usize])));
+        let keep = |s: u32, t: u32| {
+            let t_ids = &self.identities[t as usize];
+            !self.identities[s as usize].iter().any(|v| t_ids.contains(v) && proven[*v as usize])
+        };
+        self.tree.pairs(bounds, keep).into_iter().map(|(s, t)| (s.min(t), s.max(t))).collect()
+    }
+
+    /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart all the way of a straight
+    /// motion of the corners. Few, where nothing crosses.
+    pub fn doubtful_pairs(&self, from: &[Vec3A], to: &[Vec3A]) -> Vec<(u32, u32)> {
+        self.not_apart(self.unproven_pairs([from, to]), [from, to], HALVINGS)
+    }
+
+    /// Sorts pairs and leaves out those that some direction proves apart.
+    fn not_apart(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2], halvings: u32) -> Vec<(u32, u32)> {
+        let moving = |t: u32| -> Moving {
+            let corners = self.triangles[t as usize];
+            ends.map(|p| corners.map(|v| p[v as usize].as_dvec3()))
+        };
+        let mut left: Vec<(u32, u32)> = pairs
+            .into_par_iter()
+            .with_min_len(PAIRS_PER_TASK / 8)
+            .filter(|&(s, t)| {
+                let [s_ids, t_ids] = [s, t].map(|t| self.identities[t as usize]);
+                !stay_apart(&moving(s), &moving(t), s_ids, t_ids, halvings)
+            })
+            .collect();
+        left.par_sort_unstable();
+        left
     }
 
     /// Triangle `t` in a state.
@@ -150,12 +193,9 @@ impl Surface {
     }
 
     /// All crossing pairs of a state, sorted, each as (lower, higher). Exact.
-    pub fn crossings(&mut self, positions: &[Vec3A]) -> Vec<(u32, u32)> {
-        let pairs = self.near_pairs(positions, positions, 0.0);
-        let mut crossing: Vec<(u32, u32)> =
-            self.crossing_pairs(&pairs, positions).into_iter().map(|(s, t)| (s.min(t), s.max(t))).collect();
-        crossing.sort_unstable();
-        crossing
+    pub fn crossings(&self, positions: &[Vec3A]) -> Vec<(u32, u32)> {
+        let doubtful = self.not_apart(self.unproven_pairs([positions]), [positions; 2], 0);
+        self.crossing_pairs(&doubtful, positions)
     }
 
     /// The same by comparing every pair, for tests and for whoever does not trust the tree.

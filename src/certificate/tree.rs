@@ -1,8 +1,8 @@
-//! A tree of boxes over a set of triangles, built once from rest positions and refitted to every state.
+//! A tree of boxes over a set of triangles, ordered once by rest positions and fitted to every state or motion.
 //!
-//! Warping keeps neighbours together, so the rest order stays good; refitting is one pass over the boxes.
+//! Warping keeps neighbours together, so the rest order stays good; fitting is one pass over the boxes.
 
-use glam::Vec3A;
+use glam::{BVec3A, Vec3A};
 use rayon::prelude::*;
 
 /// Triangles per leaf: four boxes fit a cache line pair; more tests pairs in vain, fewer deepens the tree.
@@ -56,15 +56,38 @@ impl Bounds {
     }
 }
 
-/// The tree: a complete binary tree over leaves of four primitives, in heap order.
+/// The boxes of one primitive at the ends of a motion (one end: a state).
+///
+/// Where corners move along straight lines, two primitives whose boxes are apart along an axis at both ends, in the same
+/// order, are apart along it all the way: this says more than the boxes that hold whole motions, and moving together
+/// brings nothing near.
+type Boxes<const ENDS: usize> = [Bounds; ENDS];
+
+#[inline]
+fn may_meet<const ENDS: usize>(a: &Boxes<ENDS>, b: &Boxes<ENDS>) -> bool {
+    let (mut below, mut above) = (BVec3A::TRUE, BVec3A::TRUE);
+    for (a, b) in a.iter().zip(b) {
+        below &= a.high.cmplt(b.low);
+        above &= b.high.cmplt(a.low);
+    }
+    !(below | above).any()
+}
+
+fn union<const ENDS: usize>(a: &Boxes<ENDS>, b: &Boxes<ENDS>) -> Boxes<ENDS> {
+    std::array::from_fn(|e| a[e].union(b[e]))
+}
+
+/// The boxes of a tree's nodes in one state.
+#[derive(Debug, Clone, Default)]
+pub struct Posed {
+    heap: Vec<Bounds>,
+}
+
+/// The order of a complete binary tree over leaves of a few primitives.
 #[derive(Debug, Clone)]
 pub struct Tree {
     /// Primitive indices, leaf by leaf.
     order: Vec<u32>,
-    /// Boxes of primitives, in `order`.
-    boxes: Vec<Bounds>,
-    /// Heap of boxes: node k has children 2k and 2k + 1; the last `leaves` are the leaves.
-    heap: Vec<Bounds>,
     leaves: usize,
 }
 
@@ -74,7 +97,7 @@ impl Tree {
         let leaves = centres.len().div_ceil(LEAF).next_power_of_two();
         let mut order: Vec<u32> = (0..centres.len() as u32).collect();
         split(&mut order, centres, leaves);
-        Self { boxes: vec![Bounds::EMPTY; order.len()], heap: vec![Bounds::EMPTY; 2 * leaves], order, leaves }
+        Self { order, leaves }
     }
 
     /// Primitives of leaf `l`, as a range of `order`.
@@ -84,37 +107,47 @@ impl Tree {
         l * n / self.leaves..(l + 1) * n / self.leaves
     }
 
-    /// Takes the boxes of the present state.
-    pub fn refit(&mut self, bounds: impl Fn(u32) -> Bounds + Sync) {
-        self.boxes.par_iter_mut().zip(&self.order).with_min_len(1024).for_each(|(b, &p)| *b = bounds(p));
-        for l in 0..self.leaves {
-            let range = self.leaf(l);
-            self.heap[self.leaves + l] = self.boxes[range].iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
-        }
+    /// The boxes of all nodes: node k has children 2k and 2k + 1; the last `leaves` are the leaves.
+    fn heap<const ENDS: usize>(&self, boxes: &[Boxes<ENDS>]) -> Vec<Boxes<ENDS>> {
+        let mut heap = vec![[Bounds::EMPTY; ENDS]; 2 * self.leaves];
+        let (inner, leaves) = heap.split_at_mut(self.leaves);
+        leaves.par_iter_mut().enumerate().with_min_len(1024).for_each(|(l, node)| {
+            *node = boxes[self.leaf(l)].iter().fold([Bounds::EMPTY; ENDS], |a, b| union(&a, b));
+        });
         for k in (1..self.leaves).rev() {
-            self.heap[k] = self.heap[2 * k].union(self.heap[2 * k + 1]);
+            let child = |c: usize| if c < self.leaves { inner[c] } else { leaves[c - self.leaves] };
+            inner[k] = union(&child(2 * k), &child(2 * k + 1));
         }
+        heap
     }
 
-    /// The nearest primitive along a ray: `hit` says how far along it a primitive is met, if it is, in lengths of
-    /// `direction`. Returns the primitive and that distance; of two at the same distance the one met first.
+    /// The tree's boxes in one state, for rays. `bounds` gives the box of a primitive.
+    pub fn posed(&self, bounds: impl Fn(u32) -> Bounds + Sync) -> Posed {
+        let boxes: Vec<Boxes<1>> = self.order.par_iter().with_min_len(1024).map(|&p| [bounds(p)]).collect();
+        Posed { heap: self.heap(&boxes).into_iter().map(|[b]| b).collect() }
+    }
+
+    /// The nearest primitive along a ray in a state: `hit` says how far along it a primitive is met, if it is, in lengths
+    /// of `direction`. Returns the primitive and that distance; of two at the same distance the one met first.
     pub fn first_along(
         &self,
+        posed: &Posed,
         origin: Vec3A,
         direction: Vec3A,
         mut hit: impl FnMut(u32) -> Option<f32>,
     ) -> Option<(u32, f32)> {
+        let heap = &posed.heap;
         let inverse = direction.recip();
         let mut best: Option<(u32, f32)> = None;
         let mut stack = vec![1];
         while let Some(node) = stack.pop() {
             let limit = best.map_or(f32::INFINITY, |b| b.1);
-            if self.heap[node].entry(origin, inverse) > limit {
+            if heap[node].entry(origin, inverse) > limit {
                 continue;
             }
             if node < self.leaves {
                 let [left, right] = [2 * node, 2 * node + 1];
-                let [a, b] = [left, right].map(|child| self.heap[child].entry(origin, inverse));
+                let [a, b] = [left, right].map(|child| heap[child].entry(origin, inverse));
                 // The nearer one is looked into first; boxes that are missed are infinitely far.
                 let order = if a <= b { [(right, b), (left, a)] } else { [(left, a), (right, b)] };
                 stack.extend(order.into_iter().filter(|(_, entry)| *entry < limit).map(|(child, _)| child));
@@ -129,58 +162,84 @@ impl Tree {
         best
     }
 
-    /// All pairs of primitives whose boxes meet, each once, in an order that does not depend on threads.
-    pub fn pairs(&self) -> Vec<(u32, u32)> {
+    /// All pairs of primitives whose boxes meet, each once, in an order that does not depend on threads; of those that
+    /// `keep` keeps. `bounds` gives the boxes of a primitive at each end of a motion: pairs are left out that an axis
+    /// keeps apart all the way.
+    pub fn pairs<const ENDS: usize>(
+        &self,
+        bounds: impl Fn(u32) -> [Bounds; ENDS] + Sync,
+        keep: impl Fn(u32, u32) -> bool + Sync,
+    ) -> Vec<(u32, u32)> {
+        let boxes: Vec<Boxes<ENDS>> = self.order.par_iter().with_min_len(1024).map(|&p| bounds(p)).collect();
+        let heap = self.heap(&boxes);
+        let search = Search { tree: self, boxes, heap, keep };
         let tasks: Vec<Vec<(u32, u32)>> = (0..self.leaves.div_ceil(LEAVES_PER_TASK))
             .into_par_iter()
             .map(|task| {
                 let mut pairs = Vec::new();
                 for l in task * LEAVES_PER_TASK..((task + 1) * LEAVES_PER_TASK).min(self.leaves) {
-                    self.pairs_of_leaf(l, &mut pairs);
+                    search.pairs_of_leaf(l, &mut pairs);
                 }
                 pairs
             })
             .collect();
         tasks.concat()
     }
+}
+
+/// A tree with the boxes of one motion.
+struct Search<'a, const ENDS: usize, K> {
+    tree: &'a Tree,
+    /// Boxes of primitives, in the tree's order.
+    boxes: Vec<Boxes<ENDS>>,
+    heap: Vec<Boxes<ENDS>>,
+    keep: K,
+}
+
+impl<const ENDS: usize, K: Fn(u32, u32) -> bool> Search<'_, ENDS, K> {
+    #[inline]
+    fn take(&self, a: usize, b: usize, pairs: &mut Vec<(u32, u32)>) {
+        if may_meet(&self.boxes[a], &self.boxes[b]) {
+            let (a, b) = (self.tree.order[a], self.tree.order[b]);
+            if (self.keep)(a, b) {
+                pairs.push((a, b));
+            }
+        }
+    }
 
     fn pairs_of_leaf(&self, l: usize, pairs: &mut Vec<(u32, u32)>) {
-        let range = self.leaf(l);
-        let own = &self.heap[self.leaves + l];
+        let range = self.tree.leaf(l);
+        let own = &self.heap[self.tree.leaves + l];
         for a in range.clone() {
             for b in a + 1..range.end {
-                if self.boxes[a].meets(&self.boxes[b]) {
-                    pairs.push((self.order[a], self.order[b]));
-                }
+                self.take(a, b, pairs);
             }
         }
         // Leaves to the right of this one only: climb, and look into each right sibling.
-        let mut node = self.leaves + l;
+        let mut node = self.tree.leaves + l;
         while node > 1 {
             if node & 1 == 0 {
-                self.descend(node + 1, own, range.clone(), pairs);
+                self.descend(node + 1, own, &range, pairs);
             }
             node /= 2;
         }
     }
 
-    fn descend(&self, node: usize, own: &Bounds, range: std::ops::Range<usize>, pairs: &mut Vec<(u32, u32)>) {
-        if !self.heap[node].meets(own) {
+    fn descend(&self, node: usize, own: &Boxes<ENDS>, range: &std::ops::Range<usize>, pairs: &mut Vec<(u32, u32)>) {
+        if !may_meet(&self.heap[node], own) {
             return;
         }
-        if node < self.leaves {
-            self.descend(2 * node, own, range.clone(), pairs);
+        if node < self.tree.leaves {
+            self.descend(2 * node, own, range, pairs);
             self.descend(2 * node + 1, own, range, pairs);
             return;
         }
-        for b in self.leaf(node - self.leaves) {
-            if !self.boxes[b].meets(own) {
+        for b in self.tree.leaf(node - self.tree.leaves) {
+            if !may_meet(&self.boxes[b], own) {
                 continue;
             }
             for a in range.clone() {
-                if self.boxes[a].meets(&self.boxes[b]) {
-                    pairs.push((self.order[a], self.order[b]));
-                }
+                self.take(a, b, pairs);
             }
         }
     }
@@ -232,9 +291,9 @@ mod tests {
         fn pairs_are_those_of_brute_force(points in prop::collection::vec((0.0_f32..10.0, 0.0_f32..10.0, 0.0_f32..10.0, 0.1_f32..2.0), 0..120)) {
             let bounds: Vec<Bounds> = points.iter().map(|&(x, y, z, r)| Bounds { low: Vec3A::new(x, y, z), high: Vec3A::new(x, y, z) + r }).collect();
             let centres: Vec<Vec3A> = bounds.iter().map(|b| (b.low + b.high) * 0.5).collect();
-            let mut tree = Tree::new(&centres);
-            tree.refit(|p| bounds[p as usize]);
-            let mut found: Vec<(u32, u32)> = tree.pairs().into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
+            let tree = Tree::new(&centres);
+            let mut found: Vec<(u32, u32)> =
+                tree.pairs(|p| [bounds[p as usize]], |_, _| true).into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
             found.sort_unstable();
             let n = bounds.len() as u32;
             let expected: Vec<(u32, u32)> = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)))

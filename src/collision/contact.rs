@@ -123,11 +123,17 @@ pub fn near_within(complex: &Complex, i: u32, j: u32) -> bool {
 
 /// Finds the contacts of a state. `boundary` lists the boundary nodes, `radius` is `[nodes]`.
 pub fn find(complex: &Complex, boundary: &[u32], radius: &[f32], positions: &[Vec3A]) -> Contacts {
+    among(complex, &near(complex, boundary, radius, positions, 1.0), radius, positions)
+}
+
+/// Pairs of boundary nodes nearer to each other than `reach` times the larger radius, but for those that are near
+/// within the complex.
+pub fn near(complex: &Complex, boundary: &[u32], radius: &[f32], positions: &[Vec3A], reach: f32) -> Vec<(u32, u32)> {
     if boundary.is_empty() {
-        return Contacts::default();
+        return Vec::new();
     }
     let mean = boundary.iter().map(|&i| f64::from(radius[i as usize])).sum::<f64>() / boundary.len() as f64;
-    let hash = SpatialHash::new(boundary, positions, (1.25 * mean) as f32);
+    let hash = SpatialHash::new(boundary, positions, 1.25 * reach * mean as f32);
     // Each pair is found from its end with the larger radius.
     let found: Vec<Vec<(u32, u32)>> = boundary
         .par_chunks(CHUNK / 8)
@@ -135,10 +141,14 @@ pub fn find(complex: &Complex, boundary: &[u32], radius: &[f32], positions: &[Ve
             let mut pairs = Vec::new();
             for &i in nodes {
                 let (p, r) = (positions[i as usize], radius[i as usize]);
-                hash.near(p, r, |j| {
+                let within = reach * r;
+                hash.near(p, within, |j| {
                     let rj = radius[j as usize];
                     let first = r > rj || (r == rj && i < j);
-                    if first && (positions[j as usize] - p).length_squared() < r * r && !near_within(complex, i, j) {
+                    if first
+                        && (positions[j as usize] - p).length_squared() < within * within
+                        && !near_within(complex, i, j)
+                    {
                         pairs.push((i, j));
                     }
                 });
@@ -148,7 +158,17 @@ pub fn find(complex: &Complex, boundary: &[u32], radius: &[f32], positions: &[Ve
             pairs
         })
         .collect();
-    let pairs = found.concat();
+    found.concat()
+}
+
+/// The contacts of a state among pairs of boundary nodes.
+pub fn among(complex: &Complex, pairs: &[(u32, u32)], radius: &[f32], positions: &[Vec3A]) -> Contacts {
+    let too_close = |&(i, j): &(u32, u32)| {
+        let (i, j) = (i as usize, j as usize);
+        let most = radius[i].max(radius[j]);
+        (positions[i] - positions[j]).length_squared() < most * most
+    };
+    let pairs: Vec<(u32, u32)> = pairs.iter().copied().filter(too_close).collect();
     if pairs.is_empty() {
         return Contacts::default();
     }

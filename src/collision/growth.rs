@@ -1,4 +1,8 @@
 //! Growth: which λ comes next, and when a state counts as settled.
+//!
+//! Where nothing is in the way, growth leaps from keyframe to keyframe: it starts from where the last two keyframes point,
+//! a few iterations follow that nobody guards, and the certificate of the whole way decides. Where that is refused, the
+//! same stretch is walked in small guarded steps.
 
 /// λ grows by at most this many steps' worth of relative size change: `ln` of the largest factor per step. Above about
 /// 0.2 steps fold cells that the guard must then hold; smaller only costs time.
@@ -10,6 +14,12 @@ pub const LEAST_STEPS: usize = 20;
 /// Iterations at each λ below 1: on the way, and where the state becomes a keyframe.
 const ITERATIONS_PER_STEP: [u32; 2] = [2, 4];
 
+/// Iterations of a leap to a keyframe.
+const ITERATIONS_PER_LEAP: u32 = 2;
+
+/// A leap takes at most this much relative size change at once, as `ln` of the largest factor.
+const LN_SIZE_PER_LEAP: f32 = 0.4;
+
 /// Iterations at λ = 1 at most.
 const SETTLING_ITERATIONS: u32 = 80;
 
@@ -19,6 +29,9 @@ const HURRIED_ITERATIONS: u32 = 40;
 
 /// Iterations at λ = 1 at least.
 const LEAST_SETTLING: u32 = 8;
+
+/// The same at the end of a leap, which starts nearer: at least and at most.
+const LEAP_SETTLING: [u32; 2] = [4, 8];
 
 /// At λ = 1 the state is settled when no node moves further than this in an iteration, in cells.
 const SETTLED_MOTION: f32 = 0.02;
@@ -34,6 +47,20 @@ pub struct Growth {
     iteration: u32,
     motion: f32,
     patience: u32,
+    /// Least and greatest importance.
+    range: [f32; 2],
+    /// The first step after the last keyframe.
+    stretch: usize,
+    /// Whether the present step is a leap over the stretch to its keyframe.
+    leaps: bool,
+    /// Whether nothing was held back since the last keyframe.
+    free: bool,
+}
+
+/// The largest change of ln size from λ = a to b.
+fn ln_change(range: [f32; 2], a: f32, b: f32) -> f32 {
+    let ln_size = |lambda: f32, f: f32| (1.0 + lambda * (f - 1.0)).ln();
+    range.map(|f| (ln_size(b, f) - ln_size(a, f)).abs()).into_iter().fold(0.0, f32::max)
 }
 
 impl Growth {
@@ -54,7 +81,57 @@ impl Growth {
             }
             steps.push(b);
         }
-        Self { steps, keys: keys.max(1), step: 0, iteration: 0, motion: f32::INFINITY, patience: SETTLING_ITERATIONS }
+        let mut growth = Self {
+            steps,
+            keys: keys.max(1),
+            step: 0,
+            iteration: 0,
+            motion: f32::INFINITY,
+            patience: SETTLING_ITERATIONS,
+            range: [low, high],
+            stretch: 0,
+            leaps: false,
+            free: true,
+        };
+        growth.begin_stretch();
+        growth
+    }
+
+    /// Begins the way to the next keyframe with a leap, if nothing was in the way to the last one.
+    fn begin_stretch(&mut self) {
+        self.stretch = self.step;
+        let key = (self.step..self.steps.len()).find(|&k| self.is_key_step(k)).unwrap_or(self.step);
+        self.leaps = self.free
+            && key < self.steps.len()
+            && ln_change(self.range, self.last_key(), self.steps[key]) <= LN_SIZE_PER_LEAP;
+        self.free = true;
+        if self.leaps {
+            self.step = key;
+        }
+    }
+
+    /// λ of the last keyframe.
+    pub fn last_key(&self) -> f32 {
+        self.stretch.checked_sub(1).map_or(0.0, |k| self.steps[k])
+    }
+
+    /// Whether the present step is a leap from the last keyframe to the next.
+    pub fn leaps(&self) -> bool {
+        self.leaps
+    }
+
+    /// Gives a leap up: the same stretch again, in small steps.
+    pub fn walk(&mut self) {
+        self.leaps = false;
+        self.free = false;
+        self.step = self.stretch;
+        self.iteration = 0;
+        self.motion = f32::INFINITY;
+    }
+
+    /// Notes that something was held back: the next stretch is walked as well.
+    pub fn held_back(&mut self) {
+        self.free = false;
     }
 
     /// λ now.
@@ -75,24 +152,34 @@ impl Growth {
 
     /// Whether the state at this λ becomes a keyframe.
     pub fn is_key(&self) -> bool {
-        let key = self.lambda() * self.keys as f32;
+        self.is_key_step(self.step)
+    }
+
+    fn is_key_step(&self, step: usize) -> bool {
+        let key = self.steps.get(step).copied().unwrap_or(1.0) * self.keys as f32;
         (key - key.round()).abs() < 1.0e-3
     }
 
     /// Whether the state at this λ is as good as it gets: time for a keyframe.
     pub fn settled(&self) -> bool {
         if self.step + 1 < self.steps.len() {
-            self.iteration >= ITERATIONS_PER_STEP[usize::from(self.is_key())]
+            let enough = if self.leaps { ITERATIONS_PER_LEAP } else { ITERATIONS_PER_STEP[usize::from(self.is_key())] };
+            self.iteration >= enough
         } else {
-            self.iteration >= self.patience || (self.iteration >= LEAST_SETTLING && self.motion < SETTLED_MOTION)
+            let [least, most] = if self.leaps { LEAP_SETTLING } else { [LEAST_SETTLING, self.patience] };
+            self.iteration >= most || (self.iteration >= least && self.motion < SETTLED_MOTION)
         }
     }
 
     /// Goes to the next λ.
     pub fn advance(&mut self) {
+        let at_key = self.is_key();
         self.step += 1;
         self.iteration = 0;
         self.motion = f32::INFINITY;
+        if at_key && !self.done() {
+            self.begin_stretch();
+        }
     }
 
     /// Whether λ = 1 is reached and not kept yet.

@@ -19,7 +19,7 @@ use crate::{
 
 /// Elements may not shrink further once below this part of their target volume. Zero would let slivers through that the
 /// next step cannot leave; above about 0.1 hard cases lock too early.
-const VOLUME_FLOOR: f32 = 0.05;
+pub(crate) const VOLUME_FLOOR: f32 = 0.05;
 
 /// After this many halvings a node stays where it is.
 const HALVINGS: u8 = 3;

@@ -45,6 +45,9 @@ const STEP_LIMIT: f32 = 0.5;
 /// The same in the plane: every committed state is checked whole and needs no way to it, and large parts have to flow far.
 const FLAT_STEP_LIMIT: f32 = 4.0;
 
+/// How near pairs are kept for the iterations of a leap, in radii.
+const REACH: f32 = 1.5;
+
 /// The constant part of the collision optimization: what depends on complex and importance alone.
 #[derive(Debug, Clone)]
 pub struct Problem {
@@ -128,6 +131,11 @@ pub fn local_step(
 /// Contact: pairs of boundary nodes that are too close now.
 pub fn contact_step(complex: &Complex, problem: &Problem, asked: &Asked, positions: &[Vec3A]) -> Contacts {
     contact::find(complex, &problem.boundary_nodes, &asked.radius, positions)
+}
+
+/// Pairs of boundary nodes that may come too close within a few iterations.
+pub fn near_step(complex: &Complex, problem: &Problem, asked: &Asked, positions: &[Vec3A]) -> Vec<(u32, u32)> {
+    contact::near(complex, &problem.boundary_nodes, &asked.radius, positions, REACH)
 }
 
 /// Global step: where the nodes would like to go. Returns the proposed positions and the force left before the step
@@ -221,12 +229,12 @@ pub fn guard_step(
     guard::limit(positions, &mut proposed, |i| reach * asked.radius[i].min(1.0));
     let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
     let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
-    let motion = positions
-        .par_iter()
-        .zip(&proposed)
-        .with_min_len(CHUNK)
-        .map(|(a, b)| (*a - *b).length())
-        .reduce(|| 0.0, f32::max);
+    let motion = largest_motion(positions, &proposed);
     *positions = proposed;
     (motion, guarded)
+}
+
+/// How far any node moves from one state to another, in cells.
+pub fn largest_motion(a: &[Vec3A], b: &[Vec3A]) -> f32 {
+    a.par_iter().zip(b).with_min_len(CHUNK).map(|(a, b)| a.distance_squared(*b)).reduce(|| 0.0, f32::max).sqrt()
 }

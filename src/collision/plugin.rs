@@ -2,17 +2,22 @@
 
 use bevy::prelude::*;
 use glam::{Mat3A, Quat, Vec3A};
+use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Growth, Guarded, Problem, Shell, areas::AreaCorrection, contact_step, global_step, grow,
-    guard_step, local_step,
+    Asked, Contacts, Growth, Guarded, Problem, Shell, areas::AreaCorrection, contact, contact_step, global_step, grow,
+    guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
     diagnostics::Stopwatch,
-    edge::plugin::LinearSolution,
+    edge::{CHUNK, plugin::LinearSolution},
+    film::blend,
     importance::plugin::Importance,
     schedule::{Domain, Solve, Stage},
-    voxel::plugin::{Lattice, PixelShares},
+    voxel::{
+        Dimension,
+        plugin::{Lattice, PixelShares},
+    },
 };
 
 /// What the collision optimization of a domain is about.
@@ -47,6 +52,17 @@ pub struct Proposed(pub Vec<Vec3A>);
 #[derive(Component, Debug)]
 pub struct Warped(pub Vec<Vec3A>);
 
+/// A leap to the next keyframe, while nobody has looked whether it is valid.
+#[derive(Component, Debug, Default)]
+pub struct Leap {
+    /// `[nodes]` where it is now; V'' stays at the last keyframe meanwhile.
+    pub positions: Vec<Vec3A>,
+    /// Pairs of boundary nodes that were near each other when it began.
+    pub near: Vec<(u32, u32)>,
+    /// λ and `[nodes]` positions of the keyframe before the last.
+    pub before: Option<(f32, Vec<Vec3A>)>,
+}
+
 /// Surfaces that must not cross: the complex's skin first.
 #[derive(Component, Debug)]
 pub struct Shells(pub Vec<Shell>);
@@ -72,7 +88,7 @@ impl Plugin for CollisionPlugin {
         app.add_systems(
             Solve,
             (
-                (start, grow_sizes).chain().in_set(Stage::Grow),
+                (start, grow_sizes, leap).chain().in_set(Stage::Grow),
                 fit_cells.in_set(Stage::Local),
                 find_contacts.in_set(Stage::Contact),
                 propose.in_set(Stage::Global),
@@ -99,11 +115,11 @@ fn start(
         let (low, high) = problem.importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
         commands.entity(entity).insert((
             CollisionProblem(problem),
-            Growing(Growth::plan(domain.settings.keys, low, high)),
+            Growing(plan(complex.dimension, domain.settings.keys, low, high)),
             Warped(complex.rest.clone()),
             Shells(vec![Shell::skin(complex)]),
             (Sizes::default(), Rotations::default(), Targets::default(), Touching::default(), Proposed::default()),
-            (HeldBack::default(), Holds::default(), BoundaryAtRisk::default()),
+            (HeldBack::default(), Holds::default(), BoundaryAtRisk::default(), Leap::default()),
         ));
     }
 }
@@ -139,6 +155,15 @@ fn correct_areas(mut domains: Query<Corrected>, mut watch: ResMut<Stopwatch>) {
     }
 }
 
+/// In the plane growth walks: large parts flow far, and the correction of areas wants a settled state.
+fn plan(dimension: Dimension, keys: usize, low: f32, high: f32) -> Growth {
+    let mut growth = Growth::plan(keys, low, high);
+    if dimension == Dimension::Two {
+        growth.walk();
+    }
+    growth
+}
+
 fn grow_sizes(mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &mut Sizes)>, mut watch: ResMut<Stopwatch>) {
     for (Lattice(complex), CollisionProblem(problem), Growing(growth), mut sizes) in &mut domains {
         if !growth.done() && growth.is_new_step() {
@@ -147,39 +172,92 @@ fn grow_sizes(mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &mut Si
     }
 }
 
-fn fit_cells(
-    mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Sizes, &Warped, &mut Rotations, &mut Targets)>,
-    mut watch: ResMut<Stopwatch>,
-) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), sizes, warped, mut rotations, mut targets) in
-        &mut domains
+/// Begins a leap where the last two keyframes point; the first one on the way to the linear solution.
+fn leap(mut domains: Query<(&Lattice, &LinearSolution, &Growing, &Warped, &mut Leap)>, mut watch: ResMut<Stopwatch>) {
+    for (Lattice(complex), LinearSolution(linear), Growing(growth), Warped(warped), mut leap) in &mut domains {
+        if growth.done() || !growth.is_new_step() || !growth.leaps() {
+            continue;
+        }
+        let (last, next) = (growth.last_key(), growth.lambda());
+        leap.positions = watch.time("grow", || match &leap.before {
+            Some((before, positions)) => blend(positions, warped, (next - before) / (last - before)),
+            None => {
+                let way = |((x, v), rest): ((&Vec3A, &Vec3A), &Vec3A)| *x + (next - last) * (*v - *rest);
+                warped.par_iter().zip(linear).zip(&complex.rest).with_min_len(CHUNK).map(way).collect()
+            }
+        });
+    }
+}
+
+/// Where the iteration is: in a leap, or at V''.
+fn present<'a>(growth: &Growth, warped: &'a Warped, leap: &'a Leap) -> &'a [Vec3A] {
+    if growth.leaps() { &leap.positions } else { &warped.0 }
+}
+
+type Fitted<'a> = (
+    &'a Lattice,
+    &'a CollisionProblem,
+    &'a Growing,
+    &'a Sizes,
+    &'a Warped,
+    &'a Leap,
+    &'a mut Rotations,
+    &'a mut Targets,
+);
+
+fn fit_cells(mut domains: Query<Fitted>, mut watch: ResMut<Stopwatch>) {
+    for (
+        Lattice(complex),
+        CollisionProblem(problem),
+        Growing(growth),
+        sizes,
+        warped,
+        leap,
+        mut rotations,
+        mut targets,
+    ) in &mut domains
     {
         if !growth.done() {
-            watch.time("local", || local_step(complex, problem, &sizes.0, &warped.0, &mut rotations.0, &mut targets.0));
+            let positions = present(growth, warped, leap);
+            watch.time("local", || {
+                local_step(complex, problem, &sizes.0, positions, &mut rotations.0, &mut targets.0);
+            });
         }
     }
 }
 
 fn find_contacts(
-    mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Sizes, &Warped, &mut Touching)>,
+    mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Sizes, &Warped, &mut Leap, &mut Touching)>,
     mut watch: ResMut<Stopwatch>,
 ) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), sizes, warped, mut touching) in &mut domains {
-        if !growth.done() {
-            touching.0 = watch.time("contact", || contact_step(complex, problem, &sizes.0, &warped.0));
+    for (Lattice(complex), CollisionProblem(problem), Growing(growth), Sizes(sizes), warped, mut leap, mut touching) in
+        &mut domains
+    {
+        if growth.done() {
+            continue;
         }
+        touching.0 = watch.time("contact", || {
+            if !growth.leaps() {
+                return contact_step(complex, problem, sizes, &warped.0);
+            }
+            if growth.is_new_step() {
+                leap.near = near_step(complex, problem, sizes, &leap.positions);
+            }
+            contact::among(complex, &leap.near, &sizes.radius, &leap.positions)
+        });
     }
 }
 
-fn propose(
-    mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Warped, &Targets, &Touching, &mut Proposed)>,
-    mut watch: ResMut<Stopwatch>,
-) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), warped, targets, touching, mut proposed) in
+type Placed<'a> =
+    (&'a Lattice, &'a CollisionProblem, &'a Growing, &'a Warped, &'a Leap, &'a Targets, &'a Touching, &'a mut Proposed);
+
+fn propose(mut domains: Query<Placed>, mut watch: ResMut<Stopwatch>) {
+    for (Lattice(complex), CollisionProblem(problem), Growing(growth), warped, leap, targets, touching, mut proposed) in
         &mut domains
     {
         if !growth.done() {
-            proposed.0 = watch.time("global", || global_step(complex, problem, &warped.0, &targets.0, &touching.0).0);
+            let positions = present(growth, warped, leap);
+            proposed.0 = watch.time("global", || global_step(complex, problem, positions, &targets.0, &touching.0).0);
         }
     }
 }
@@ -194,6 +272,7 @@ type Accepted<'a> = (
     &'a mut Proposed,
     &'a mut HeldBack,
     &'a mut Holds,
+    &'a mut Leap,
 );
 
 fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
@@ -207,17 +286,28 @@ fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
         mut proposed,
         mut held_back,
         mut holds,
+        mut leap,
     ) in &mut domains
     {
         if growing.0.done() {
             continue;
         }
         let proposed = std::mem::take(&mut proposed.0);
+        if growing.0.leaps() {
+            // The certificate of the whole leap takes the guard's place.
+            growing.0.iterated(largest_motion(&leap.positions, &proposed));
+            leap.positions = proposed;
+            held_back.0 = Guarded::default();
+            continue;
+        }
         let guarded = if at_risk.0 { shells.0.len() } else { 1 };
         let (motion, guarded) = watch.time("guard", || {
             guard_step(complex, &sizes.0, &mut shells.0[..guarded], &mut warped.0, proposed, &mut holds.0)
         });
         growing.0.iterated(motion);
+        if guarded.held_back > 0 || complex.dimension == Dimension::Two {
+            growing.0.held_back();
+        }
         held_back.0 = guarded;
     }
 }

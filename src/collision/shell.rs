@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use crate::{
     boundary::{Boundary, Sets},
-    certificate::{Surface, is_positive},
+    certificate::{Surface, flat_stays_positive, is_positive},
+    film::blend,
     transfer::Binding,
     voxel::{Complex, Dimension},
 };
@@ -81,7 +82,7 @@ impl Shell {
         let welded = boundary.welded();
         let identities = boundary.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
         let rest = binding.apply_for_check(&complex.rest);
-        let mut surface = Surface::welded(boundary.triangles.clone(), identities, &rest);
+        let surface = Surface::welded(boundary.triangles.clone(), identities, &rest);
         let mut inherited = surface.crossings(&rest);
         let crossing_at_rest = inherited.len();
         for seed in 1..=NUDGES {
@@ -152,7 +153,7 @@ impl Shell {
     }
 
     /// Pairs that may cross in any state between two, node by node.
-    pub(super) fn near_pairs(&mut self, a: &[Vec3A], b: &[Vec3A]) -> Vec<(u32, u32)> {
+    pub(super) fn near_pairs(&self, a: &[Vec3A], b: &[Vec3A]) -> Vec<(u32, u32)> {
         match &self.binding {
             None => self.surface.near_pairs(a, b, 0.0),
             Some(binding) => {
@@ -198,12 +199,8 @@ impl Shell {
     }
 
     /// All crossing pairs of a state that were not there at rest. Exact.
-    pub fn crossings(&mut self, nodes: &[Vec3A]) -> Vec<(u32, u32)> {
-        let positions = match &self.binding {
-            None => Cow::Borrowed(nodes),
-            Some(binding) => Cow::Owned(binding.apply_for_check(nodes)),
-        };
-        let mut pairs = self.surface.crossings(&positions);
+    pub fn crossings(&self, nodes: &[Vec3A]) -> Vec<(u32, u32)> {
+        let mut pairs = self.surface.crossings(&self.positions(nodes));
         pairs.retain(|&pair| !self.is_inherited(pair));
         pairs
     }
@@ -211,6 +208,20 @@ impl Shell {
     /// Triangles of a flat surface that are not positively oriented in a state. Exact.
     pub fn inverted(&self, nodes: &[Vec3A]) -> Vec<u32> {
         if self.flat_elements.is_empty() { Vec::new() } else { self.inverted_at(&self.positions(nodes)) }
+    }
+
+    /// Whether the triangles of a flat surface stay positive on the straight way between two states: proven at every
+    /// instant; those on which no proof comes out are looked at in `samples`, parts of the way, and at its end.
+    pub fn stays_unfolded(&self, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> bool {
+        if self.flat_elements.is_empty() {
+            return true;
+        }
+        let ends = [self.positions(from), self.positions(to)];
+        let is_proven = |t: &[u32; 3]| flat_stays_positive([0, 1].map(|end| t.map(|v| ends[end][v as usize])));
+        if self.flat_elements.par_iter().with_min_len(2048).all(is_proven) {
+            return true;
+        }
+        samples.iter().chain(&[1.0]).all(|&part| self.inverted(&blend(from, to, part)).is_empty())
     }
 
     /// Makes a flat surface follow the complex's own elements where it turns over or crosses itself in a state although
@@ -240,6 +251,24 @@ impl Shell {
         };
         let elements = self.flat_elements.par_iter().with_min_len(2048).enumerate();
         elements.filter(|(_, t)| !is_sound(t)).map(|(t, _)| t as u32).collect()
+    }
+
+    /// The same for the state at the end of a straight motion of the nodes, and whether the way there is clear: proven at
+    /// every instant, but for pairs of triangles on which no proof came out; these are looked at in `samples`, parts of
+    /// the way.
+    pub fn crossings_after(&self, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> (Vec<(u32, u32)>, bool) {
+        let end = self.positions(to);
+        let mut doubtful = self.surface.doubtful_pairs(&self.positions(from), &end);
+        doubtful.retain(|&pair| !self.is_inherited(pair));
+        if doubtful.is_empty() {
+            return (doubtful, true);
+        }
+        let crossing = self.surface.crossing_pairs(&doubtful, &end);
+        let clear = samples.iter().all(|&part| {
+            let between = blend(from, to, part);
+            self.surface.crossing_pairs(&doubtful, &self.positions(&between)).is_empty()
+        });
+        (crossing, clear)
     }
 
     /// The nodes that carry triangle `t`: where a crossing is.

@@ -10,8 +10,6 @@
 //! Smoother: two damped Jacobi sweeps with Chebyshev weights, the same before and (reversed) after, so that the cycle is
 //! symmetric. Every loop gathers, none scatters: the result has the same bits for any number of threads.
 
-use std::collections::HashMap;
-
 use glam::{IVec3, Vec3A};
 use rayon::prelude::*;
 
@@ -219,30 +217,32 @@ impl Multigrid {
 
 /// Builds the next lattice and links `fine` to it.
 fn coarsen(fine: &mut Level, positions: &[IVec3]) -> (Level, Vec<IVec3>) {
-    let key = |p: IVec3| ((p.z as u64) << 40) | ((p.y as u64) << 20) | p.x as u64;
+    let halves = |p: IVec3| {
+        let parity = p & 1;
+        [(p - parity) / 2, (p + parity) / 2]
+    };
+    let size = positions.iter().fold(IVec3::ZERO, |m, &p| m.max(halves(p)[1])) + 1;
+    let key = |p: IVec3| ((p.z as usize) * size.y as usize + p.y as usize) * size.x as usize + p.x as usize;
     // Only corners that are parents become unknowns: others would have empty rows.
-    let mut keys: Vec<u64> = positions
-        .iter()
-        .flat_map(|&p| {
-            let parity = p & 1;
-            [key((p - parity) / 2), key((p + parity) / 2)]
-        })
-        .collect();
-    keys.par_sort_unstable();
-    keys.dedup();
-    let mask = (1 << 20) - 1;
-    let coarse_positions: Vec<IVec3> =
-        keys.iter().map(|&k| IVec3::new((k & mask) as i32, (k >> 20 & mask) as i32, (k >> 40) as i32)).collect();
-    let index: HashMap<u64, u32> = keys.iter().enumerate().map(|(i, &k)| (k, i as u32)).collect();
-    fine.parents = positions
-        .par_iter()
-        .map(|&p| {
-            let parity = p & 1;
-            [index[&key((p - parity) / 2)], index[&key((p + parity) / 2)]]
-        })
-        .collect();
+    let mut index = vec![u32::MAX; size.x as usize * size.y as usize * size.z as usize];
+    for p in positions.iter().flat_map(|&p| halves(p)) {
+        index[key(p)] = 0;
+    }
+    let mut coarse_positions = Vec::new();
+    for z in 0..size.z {
+        for y in 0..size.y {
+            for x in 0..size.x {
+                let slot = &mut index[key(IVec3::new(x, y, z))];
+                if *slot == 0 {
+                    *slot = coarse_positions.len() as u32;
+                    coarse_positions.push(IVec3::new(x, y, z));
+                }
+            }
+        }
+    }
+    fine.parents = positions.par_iter().map(|&p| halves(p).map(|half| index[key(half)])).collect();
 
-    let n = keys.len();
+    let n = coarse_positions.len();
     let mut counts = vec![0_u32; n + 1];
     for &[p, q] in &fine.parents {
         counts[p as usize + 1] += 1;

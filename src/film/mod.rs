@@ -10,7 +10,7 @@ use glam::{DVec2, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
-    certificate::{Certificate, certify},
+    certificate::{Certificate, certify, certify_way},
     collision::{Shell, Watch, guard::guard},
     edge::CHUNK,
     voxel::Complex,
@@ -25,6 +25,8 @@ pub struct Keyframe {
     pub positions: Vec<Vec3A>,
     /// What the check found.
     pub certificate: Certificate,
+    /// Whether the blends from the keyframe before to this one are known to be valid.
+    pub way_is_clear: bool,
 }
 
 /// Keyframes by ascending λ; the first is the rest state.
@@ -57,11 +59,14 @@ impl Film {
         let mut k = 1;
         while k < self.keyframes.len() {
             let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
-            let sound = from.certificate.certified();
-            if !sound || way_is_clear(from, to, complex, shells) {
+            if !from.certificate.certified() || to.way_is_clear {
+                k += 1;
+            } else if certify_way(complex, shells, &from.positions, &to.positions).1 {
+                self.keyframes[k].way_is_clear = true;
                 k += 1;
             } else if to.lambda - from.lambda > SHORTEST_STEP {
                 let keyframe = between(complex, shells, size, from, to);
+                self.keyframes[k].way_is_clear = false;
                 self.keyframes.insert(k, keyframe);
             } else {
                 self.keyframes[k] = reached(complex, shells, size, from, to.lambda, to.positions.clone());
@@ -83,7 +88,7 @@ impl Film {
                 let at = &self.keyframes[k].positions;
                 again |= shells.iter_mut().fold(false, |any, shell| shell.straighten(at) || any);
                 let Some(next) = self.keyframes.get(k + 1) else { continue };
-                for &part in Watch::Way.parts().iter().filter(|&&part| part < 1.0) {
+                for part in (1..8).map(|k| k as f32 / 8.0) {
                     let state = blend(at, &next.positions, part);
                     again |= shells.iter_mut().fold(false, |any, shell| shell.straighten(&state) || any);
                 }
@@ -93,19 +98,10 @@ impl Film {
         if changed {
             for keyframe in &mut self.keyframes {
                 keyframe.certificate = certify(complex, shells, &keyframe.positions);
+                keyframe.way_is_clear = false;
             }
         }
     }
-}
-
-/// Whether the blends of two keyframes are valid where they are looked at; the later keyframe itself is one of them.
-fn way_is_clear(a: &Keyframe, b: &Keyframe, complex: &Complex, shells: &mut [Shell]) -> bool {
-    b.certificate.certified()
-        && Watch::Way
-            .parts()
-            .iter()
-            .filter(|&&t| t < 1.0)
-            .all(|&t| certify(complex, shells, &blend(&a.positions, &b.positions, t)).certified())
 }
 
 /// A keyframe half-way between two, guarded from the first of them.
@@ -124,7 +120,7 @@ fn reached(
 ) -> Keyframe {
     guard(complex, shells, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
     let certificate = certify(complex, shells, &positions);
-    Keyframe { lambda, positions, certificate }
+    Keyframe { lambda, positions, certificate, way_is_clear: false }
 }
 
 /// `(1 − t) a + t b` of places in the plane.

@@ -5,10 +5,10 @@ use glam::Vec3A;
 
 use super::{Film, Keyframe};
 use crate::{
-    certificate::{Certificate, certify},
+    certificate::{Certificate, certify, certify_way},
     collision::{
         Shell, Watch, guard,
-        plugin::{BoundaryAtRisk, Growing, Shells, Sizes, Warped},
+        plugin::{BoundaryAtRisk, Growing, Leap, Shells, Sizes, Warped},
     },
     diagnostics::Stopwatch,
     schedule::{Solve, Stage},
@@ -30,32 +30,54 @@ impl Plugin for FilmPlugin {
 
 type Unfilmed = (With<Growing>, Without<Reel>);
 
-fn open(
-    mut commands: Commands,
-    mut domains: Query<(Entity, &Lattice, &mut Shells), Unfilmed>,
-    mut watch: ResMut<Stopwatch>,
-) {
-    for (entity, Lattice(complex), mut shells) in &mut domains {
+fn open(mut commands: Commands, domains: Query<(Entity, &Lattice, &Shells), Unfilmed>, mut watch: ResMut<Stopwatch>) {
+    for (entity, Lattice(complex), shells) in &domains {
         let mut film = Film::default();
-        let certificate = watch.time("certificate", || certify(complex, &mut shells.0, &complex.rest));
-        film.push(Keyframe { lambda: 0.0, positions: complex.rest.clone(), certificate });
+        let certificate = watch.time("certificate", || certify(complex, &shells.0, &complex.rest));
+        film.push(Keyframe { lambda: 0.0, positions: complex.rest.clone(), certificate, way_is_clear: true });
         commands.entity(entity).insert(Reel(film));
     }
 }
 
-type Filmed<'a> =
-    (&'a Lattice, &'a Sizes, &'a mut Growing, &'a mut Warped, &'a mut Shells, &'a mut Reel, &'a mut BoundaryAtRisk);
+type Filmed<'a> = (
+    &'a Lattice,
+    &'a Sizes,
+    &'a mut Growing,
+    &'a mut Warped,
+    &'a mut Shells,
+    &'a mut Reel,
+    &'a mut BoundaryAtRisk,
+    &'a mut Leap,
+);
 
 fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), sizes, mut growing, mut warped, mut shells, mut reel, mut at_risk) in &mut domains {
+    for (Lattice(complex), sizes, mut growing, mut warped, mut shells, mut reel, mut at_risk, mut leap) in &mut domains
+    {
         if growing.0.done() || !growing.0.settled() {
+            continue;
+        }
+        let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
+        if growing.0.leaps() {
+            let landed = watch.time("certificate", || land(complex, shells, &sizes.0.size, warped, &leap.positions));
+            let Some(certificate) = landed else {
+                growing.0.walk();
+                continue;
+            };
+            let from = std::mem::replace(warped, std::mem::take(&mut leap.positions));
+            leap.before = Some((growing.0.last_key(), from));
+            film.push(Keyframe {
+                lambda: growing.0.lambda(),
+                positions: warped.clone(),
+                certificate,
+                way_is_clear: true,
+            });
+            growing.0.advance();
             continue;
         }
         if !growing.0.is_key() {
             growing.0.advance();
             continue;
         }
-        let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
         let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
         while !certificate.certified() && straighten(shells, warped) {
             certificate = watch.time("certificate", || certify(complex, shells, warped));
@@ -63,9 +85,11 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         if !certificate.certified() {
             at_risk.0 = true;
             growing.0.hurry();
+            growing.0.held_back();
             certificate = draw_back(complex, &sizes.0.size, shells, film, warped, &mut watch);
         }
-        film.push(Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate });
+        leap.before = film.keyframes().last().map(|k| (k.lambda, k.positions.clone()));
+        film.push(Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate, way_is_clear: false });
         growing.0.advance();
     }
 }
@@ -73,6 +97,15 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
 /// Straightens what a flat surface needs; whether it helped to change anything.
 fn straighten(shells: &mut [Shell], warped: &[Vec3A]) -> bool {
     shells.iter_mut().fold(false, |changed, shell| shell.straighten(warped) || changed)
+}
+
+/// The certificate of a leap's end, if all of the way there is valid and no element comes out flatter than the guard
+/// would let it.
+fn land(complex: &Complex, shells: &[Shell], size: &[f32], from: &[Vec3A], to: &[Vec3A]) -> Option<Certificate> {
+    let (certificate, clear) = certify_way(complex, shells, from, to);
+    let least = size.iter().copied().fold(f32::INFINITY, f32::min);
+    let floor = f64::from(guard::VOLUME_FLOOR * complex.dimension.measure(least));
+    (clear && certificate.min_volume_ratio() > floor).then_some(certificate)
 }
 
 /// Draws a state that cannot be reached without crossing back towards the last keyframe, and certifies it.

@@ -121,5 +121,5 @@ fn keep(
     watch: &mut Stopwatch,
 ) {
     let certificate = watch.time("certificate", || certify(complex, shells, positions));
-    film.push(Keyframe { lambda, positions: positions.to_vec(), certificate });
+    film.push(Keyframe { lambda, positions: positions.to_vec(), certificate, way_is_clear: false });
 }

@@ -158,14 +158,15 @@ impl Binding {
 
     /// B' of a state, in source units, rounded as it will be written.
     pub fn apply(&self, nodes: &[Vec3A]) -> Vec<DVec3> {
-        let nodes = &self.refinement.apply(nodes);
         (0..self.nodes.len()).into_par_iter().with_min_len(VERTICES_PER_TASK).map(|v| self.vertex(v, nodes)).collect()
     }
 
     fn vertex(&self, v: usize, nodes: &[Vec3A]) -> DVec3 {
         let mut moved = DVec3::ZERO;
         for (&i, &w) in self.nodes[v].iter().zip(&self.weights[v]) {
-            moved += f64::from(w) * (nodes[i as usize].as_dvec3() - self.rest_nodes[i as usize].as_dvec3());
+            // Few nodes of the halved lattice carry a vertex: they are made as they are needed.
+            let node = self.refinement.node(i as usize, nodes);
+            moved += f64::from(w) * (node.as_dvec3() - self.rest_nodes[i as usize].as_dvec3());
         }
         if moved == DVec3::ZERO {
             return self.rest[v];
@@ -176,7 +177,6 @@ impl Binding {
 
     /// B' of a state for comparing its triangles: source units where files hold f32, else cells.
     pub fn apply_for_check(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
-        let nodes = &self.refinement.apply(nodes);
         (0..self.nodes.len())
             .into_par_iter()
             .with_min_len(VERTICES_PER_TASK)

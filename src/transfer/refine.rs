@@ -65,13 +65,16 @@ impl Refinement {
 
     /// Positions of the halved lattice's nodes.
     pub fn apply(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
-        let middle = |(at, weights): &([u32; 4], [f32; 4])| -> Vec3A {
-            at.iter().zip(weights).map(|(&i, &w)| w * nodes[i as usize]).sum()
-        };
-        let mut refined = Vec::with_capacity(self.coarse + self.middles.len());
-        refined.extend_from_slice(nodes);
-        refined.par_extend(self.middles.par_iter().with_min_len(NODES_PER_TASK).map(middle));
-        refined
+        let all = 0..self.coarse + self.middles.len();
+        all.into_par_iter().with_min_len(NODES_PER_TASK).map(|k| self.node(k, nodes)).collect()
+    }
+
+    /// Position of one node of the halved lattice.
+    #[inline]
+    pub fn node(&self, k: usize, nodes: &[Vec3A]) -> Vec3A {
+        let Some(edge) = k.checked_sub(self.coarse) else { return nodes[k] };
+        let (at, weights) = &self.middles[edge];
+        at.iter().zip(weights).map(|(&i, &w)| w * nodes[i as usize]).sum()
     }
 
     /// The least (or greatest, if `low` and `high` come the other way round) of each node for nodes anywhere between.

@@ -7,7 +7,7 @@ use glam::Vec3A;
 use rayon::prelude::*;
 
 use super::{Body, Placement, Pose, ViewFrame, state::placed};
-use crate::certificate::{Bounds, Tree};
+use crate::certificate::{Bounds, Posed, Tree};
 
 /// Vertices per parallel task.
 const VERTICES_PER_TASK: usize = 8192;
@@ -56,6 +56,7 @@ pub struct Picker {
 struct Shape {
     positions: Vec<Vec3A>,
     tree: Tree,
+    boxes: Posed,
 }
 
 /// States whose vertices are kept: the two of a pose and the two before.
@@ -86,7 +87,7 @@ impl Picker {
         let rest = self.rest.as_ref()?;
         let shape = if target == Target::Surface { self.posed.as_ref().unwrap_or(rest) } else { rest };
         let corners = |t: u32, positions: &[Vec3A]| triangles[t as usize].map(|v| positions[v as usize]);
-        let (triangle, distance) = shape.tree.first_along(origin, direction, |t| {
+        let (triangle, distance) = shape.tree.first_along(&shape.boxes, origin, direction, |t| {
             meet(origin, direction, corners(t, &shape.positions)).map(|(distance, _)| distance)
         })?;
         let [a, b, c] = corners(triangle, &shape.positions);
@@ -136,7 +137,7 @@ impl Picker {
                 let tree = self.rest.as_ref().map(|rest| rest.tree.clone());
                 let positions = blended.collect();
                 let mut shape = match tree {
-                    Some(tree) => Shape { positions, tree },
+                    Some(tree) => Shape { positions, tree, boxes: Posed::default() },
                     None => Shape::new(body, positions),
                 };
                 shape.refit(body);
@@ -152,14 +153,14 @@ impl Shape {
         let centre = |t: &[u32; 3]| t.map(|v| positions[v as usize]).into_iter().sum::<Vec3A>() / 3.0;
         let centres: Vec<Vec3A> = body.boundary.triangles.par_iter().map(centre).collect();
         let tree = Tree::new(&centres);
-        let mut shape = Self { positions, tree };
+        let mut shape = Self { positions, tree, boxes: Posed::default() };
         shape.refit(body);
         shape
     }
 
     fn refit(&mut self, body: &Body) {
         let (triangles, positions) = (&body.boundary.triangles, &self.positions);
-        self.tree.refit(|t| Bounds::of(triangles[t as usize].map(|v| positions[v as usize])));
+        self.boxes = self.tree.posed(|t| Bounds::of(triangles[t as usize].map(|v| positions[v as usize])));
     }
 }
 

@@ -116,7 +116,7 @@ proptest! {
         let mut random = Random(seed);
         let (points, triangles) = coarse(&mut random, if fine { 4000.0 } else { 8.0 }, count);
         let rest: Vec<Vec3A> = points.iter().map(|p| p.as_vec3a()).collect();
-        let mut surface = Surface::new(triangles, &rest);
+        let surface = Surface::new(triangles, &rest);
         // At rest, and in a state that has little to do with it.
         let moved: Vec<Vec3A> = rest.iter().map(|p| *p * random.unit() as f32).collect();
         for state in [&rest, &moved] {
@@ -146,7 +146,7 @@ proptest! {
 fn sabotage_a_tree_of_other_boxes_misses_crossings() {
     let at = |p: [f32; 3]| Vec3A::from_array(p);
     let rest = [[0., 0., 0.], [2., 0., 0.], [0., 2., 0.], [0.5, 0.5, -1.], [0.5, 0.5, 1.], [3., 3., 1.]].map(at);
-    let mut surface = Surface::new(vec![[0, 1, 2], [3, 4, 5]], &rest);
+    let surface = Surface::new(vec![[0, 1, 2], [3, 4, 5]], &rest);
     assert_eq!(surface.crossings(&rest), [(0, 1)]);
     let apart: Vec<Vec3A> =
         rest.iter().enumerate().map(|(k, p)| *p + if k > 2 { Vec3A::X * 9.0 } else { Vec3A::ZERO }).collect();

@@ -1,0 +1,209 @@
+//! Elements: whether all are positively oriented, in a state or all the way between two.
+
+use glam::{DVec3, Mat3A, Vec3A};
+use rayon::prelude::*;
+
+use super::predicates::{self, orientation};
+use crate::{
+    film::blend,
+    voxel::{Complex, Dimension, KUHN},
+};
+
+/// Cells per parallel task.
+const CELLS_PER_TASK: usize = 512;
+
+/// What was found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Check {
+    /// Elements that are not positive. Exact.
+    pub inverted: usize,
+    /// Least ratio of an element's volume to its rest volume.
+    pub least: f64,
+    /// The cell it is in.
+    pub smallest: Option<usize>,
+}
+
+impl Check {
+    const NOTHING: Self = Self { inverted: 0, least: f64::INFINITY, smallest: None };
+
+    fn and(self, other: Self) -> Self {
+        // Ties go to the first cell, so that the answer does not depend on threads.
+        let key = |c: &Self| (c.least, c.smallest.unwrap_or(usize::MAX));
+        let first = if key(&self) <= key(&other) { self } else { other };
+        Self { inverted: self.inverted + other.inverted, ..first }
+    }
+}
+
+/// Checks all elements of a state.
+pub(super) fn check(complex: &Complex, positions: &[Vec3A]) -> Check {
+    let check_cell = checker(complex.dimension);
+    cells(complex).map(|(cell, corners)| check_cell(cell, corners, positions)).reduce(|| Check::NOTHING, Check::and)
+}
+
+/// Checks all elements of the state `to`, and whether they are positive all the way there; where that is not proven, at
+/// `samples`, parts of the way.
+pub(super) fn check_way(complex: &Complex, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> (Check, bool) {
+    let check_cell = checker(complex.dimension);
+    let stays_positive = match complex.dimension {
+        Dimension::Two => flat_cell_stays_positive,
+        Dimension::Three => stays_positive,
+    };
+    let (check, doubtful) = cells(complex)
+        .map(|(cell, corners)| {
+            let check = check_cell(cell, corners, to);
+            let doubtful = !stays_positive([from, to].map(|p| corners.map(|c| p[c as usize])));
+            (check, if doubtful { vec![cell] } else { Vec::new() })
+        })
+        .reduce(
+            || (Check::NOTHING, Vec::new()),
+            |(a, mut doubtful), (b, more)| {
+                doubtful.extend(more);
+                (a.and(b), doubtful)
+            },
+        );
+    let positive = doubtful.is_empty()
+        || samples.iter().all(|&part| {
+            let between = blend(from, to, part);
+            doubtful.iter().all(|&cell| check_cell(cell, &complex.corners[cell], &between).inverted == 0)
+        });
+    (check, positive)
+}
+
+fn cells(complex: &Complex) -> impl IndexedParallelIterator<Item = (usize, &[u32; 8])> {
+    complex.corners.par_iter().enumerate().with_min_len(CELLS_PER_TASK)
+}
+
+/// What checks a cell of a state.
+fn checker(dimension: Dimension) -> fn(usize, &[u32; 8], &[Vec3A]) -> Check {
+    match dimension {
+        Dimension::Two => check_flat_cell,
+        Dimension::Three => check_cell,
+    }
+}
+
+/// In the plane the sign of every element is taken from the exact predicate.
+fn check_flat_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Check {
+    let mut check = Check { smallest: Some(cell), ..Check::NOTHING };
+    for element in Dimension::Two.elements() {
+        let at = element.map(|k| positions[corners[k] as usize].as_dvec3());
+        let area = (at[1] - at[0]).truncate().perp_dot((at[2] - at[0]).truncate());
+        check.inverted += usize::from(!area.is_finite() || !predicates::is_positive(Dimension::Two, at));
+        check.least = check.least.min(area);
+    }
+    check
+}
+
+fn flat_cell_stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
+    Dimension::Two.elements().iter().all(|&[a, b, c, _]| flat_stays_positive(ends.map(|at| [at[a], at[b], at[c]])))
+}
+
+/// Whether a triangle of the plane is proven to be positive all the way of a straight motion. Never wrongly true.
+///
+/// Its area is quadratic in time, and positive where its Bernstein coefficients are.
+pub(crate) fn flat_stays_positive(ends: [[Vec3A; 3]; 2]) -> bool {
+    let [[u, v], [p, q]] = ends.map(|at| {
+        let [a, b, c] = at.map(|p| p.as_dvec3().truncate());
+        [b - a, c - a]
+    });
+    let largest = [u, v, p, q].iter().fold(glam::DVec2::ZERO, |m, e| m.max(e.abs())).max_element();
+    let bound = 1.0e-13 * largest * largest;
+    let coefficients = [u.perp_dot(v), 0.5 * (u.perp_dot(q) + p.perp_dot(v)), p.perp_dot(q)];
+    coefficients.iter().all(|&c| c > bound)
+}
+
+/// Bounds the rounding of an element's volume in f32, relative to the cube of its cell's largest component: some forty
+/// roundings of 2⁻²⁴ each.
+const ROUNDING: f32 = 1.0e-5;
+
+#[inline]
+fn check_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Check {
+    let at = corners.map(|c| positions[c as usize]);
+    // Every element starts at corner 0.
+    let from_first = at.map(|p| p - at[0]);
+    let largest = from_first.iter().fold(Vec3A::ZERO, |m, e| m.max(e.abs())).max_element();
+    let bound = ROUNDING * largest * largest * largest;
+    let mut check = Check { smallest: Some(cell), ..Check::NOTHING };
+    for element in KUHN {
+        let [_, b, c, d] = element.map(|k| from_first[k]);
+        let volume = b.dot(c.cross(d));
+        let is_clear = volume > bound && volume.is_finite();
+        let mut exact = f64::from(volume);
+        if !is_clear {
+            let [a, b, c, d] = element.map(|k| at[k].as_dvec3());
+            exact = (b - a).dot((c - a).cross(d - a));
+            check.inverted += usize::from(!exact.is_finite() || orientation(a, b, c, d) <= 0);
+        }
+        check.least = check.least.min(exact);
+    }
+    check
+}
+
+/// The twelve edges of a cell along the axes, each as corners.
+const EDGES: [[[usize; 2]; 4]; 3] =
+    [[[0, 1], [2, 3], [4, 5], [6, 7]], [[0, 2], [1, 3], [4, 6], [5, 7]], [[0, 4], [1, 5], [2, 6], [3, 7]]];
+
+/// Whether all elements of a cell are proven to be positive all the way. Never wrongly true.
+///
+/// An element's edges along the axes are the columns of its deformation gradient F. If ‖B F − I‖ < 1 for a matrix B then
+/// det B and det F have one sign; the set of such F is convex, so it is enough to look at both ends.
+#[inline]
+fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
+    let mut edges = [[Vec3A::ZERO; 8]; 3];
+    for (edges, along) in edges.iter_mut().zip(EDGES) {
+        for (k, [a, b]) in along.into_iter().enumerate() {
+            edges[k] = from[b] - from[a];
+            edges[k + 4] = to[b] - to[a];
+        }
+    }
+    let mean = edges.map(|e| 0.125 * (((e[0] + e[1]) + (e[2] + e[3])) + ((e[4] + e[5]) + (e[6] + e[7]))));
+    let middle = Mat3A::from_cols(mean[0], mean[1], mean[2]);
+    if middle.determinant() < 1.0e-6 {
+        return bernstein([from, to]);
+    }
+    let inverse = middle.inverse();
+    let (mut deviation, mut longest) = (0.0_f32, 0.0_f32);
+    for (along, axis) in edges.into_iter().zip([Vec3A::X, Vec3A::Y, Vec3A::Z]) {
+        let mut most = 0.0_f32;
+        for e in along {
+            most = most.max((inverse * e - axis).length_squared());
+            longest = longest.max(e.length_squared());
+        }
+        deviation += most;
+    }
+    let norm = [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|c| c.length_squared()).iter().sum::<f32>();
+    // With norms like these all that rounding can do is far below the tenth that is left to it. One element then tells
+    // the sign for all.
+    let is_linear = deviation < 0.8 && norm * longest < 1.0e6;
+    (is_linear && is_positive(KUHN[0], &to)) || bernstein([from, to])
+}
+
+fn is_positive(element: [usize; 4], at: &[Vec3A; 8]) -> bool {
+    let [a, b, c, d] = element.map(|k| at[k].as_dvec3());
+    orientation(a, b, c, d) > 0
+}
+
+/// The same, element by element: the volume is cubic in time, and positive where its Bernstein coefficients are.
+#[cold]
+fn bernstein([from, to]: [[Vec3A; 8]; 2]) -> bool {
+    KUHN.into_iter().all(|element| {
+        let edges = |at: &[Vec3A; 8]| {
+            let [a, b, c, d] = element.map(|k| at[k].as_dvec3());
+            [b - a, c - a, d - a]
+        };
+        let (start, end) = (edges(&from), edges(&to));
+        let volume = |pick: [usize; 3]| {
+            let [a, b, c]: [DVec3; 3] = std::array::from_fn(|k| [start, end][pick[k]][k]);
+            a.dot(b.cross(c))
+        };
+        let largest = start.iter().chain(&end).fold(DVec3::ZERO, |m, e| m.max(e.abs())).max_element();
+        let bound = 1.0e-13 * largest.powi(3);
+        let third = |picks: [[usize; 3]; 3]| picks.map(volume).iter().sum::<f64>() / 3.0;
+        let coefficients = [
+            volume([0, 0, 0]),
+            third([[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+            third([[1, 1, 0], [1, 0, 1], [0, 1, 1]]),
+            volume([1, 1, 1]),
+        ];
+        coefficients.iter().all(|&c| c > bound)
+    })
+}

@@ -1,0 +1,164 @@
+//! Motions: pairs of triangles proven apart at every instant while their corners move along straight lines.
+//!
+//! A direction along which one lies before the other at both ends has it before the other all the way, since the
+//! difference of two corners along a fixed direction is linear in time. Where no direction serves for the whole motion,
+//! its halves are looked at.
+
+use glam::DVec3;
+
+use super::star::{Normals, ROUNDING};
+
+/// Halvings of a motion.
+pub(super) const HALVINGS: u32 = 5;
+
+/// A triangle's corners at both ends of a motion.
+pub(super) type Moving = [[DVec3; 3]; 2];
+
+/// Whether two moving triangles are proven to have nothing in common but the corners they share, all the way. Never
+/// wrongly true. Ids are equal where corners are the same point. A state is a motion without halvings.
+pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 3], t_ids: [u32; 3], halvings: u32) -> bool {
+    let (mut shared, mut count) = ([(0, 0); 3], 0);
+    for (i, id) in s_ids.iter().enumerate() {
+        if let Some(j) = t_ids.iter().position(|other| other == id) {
+            shared[count] = (i, j);
+            count += 1;
+        }
+    }
+    match shared[..count] {
+        [] => halved(s, t, halvings, &|s, t| {
+            let [m, n] = [middle(s), middle(t)];
+            let of_m = normal(&m);
+            if [centre(&n) - centre(&m), of_m, normal(&n)].into_iter().any(|d| is_between(s, t, d)) {
+                return true;
+            }
+            // Side by side in one plane.
+            [m, n].iter().any(|p| (0..3).any(|k| is_between(s, t, of_m.cross(p[(k + 1) % 3] - p[k]))))
+        }),
+        [(i, j)] => halved(s, t, halvings, &|s, t| {
+            let far = |p: &Moving, k: usize| p.map(|p| [p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]]);
+            let (far_s, far_t) = (far(s, i), far(t, j));
+            let [m, n] = [middle(s), middle(t)];
+            let apart = (centre(&n) - n[j]).normalize_or_zero() - (centre(&m) - m[i]).normalize_or_zero();
+            [apart, normal(&m), -normal(&m), normal(&n), -normal(&n)]
+                .into_iter()
+                .any(|d| is_within(&far_s, -d) && is_within(&far_t, d))
+        }),
+        [(i, j), (k, l)] => {
+            // Seen along some direction, both turn the same way around their common edge: they lie on its two sides.
+            let opposite = ((k + 3 - i) % 3 == 1) != ((l + 3 - j) % 3 == 1);
+            halved(s, t, halvings, &|s, t| {
+                let flipped = if opposite { *t } else { t.map(|[a, b, c]| [a, c, b]) };
+                let (of_s, of_t) = (Normals::of(*s), Normals::of(flipped));
+                let [m, n] = [of_s, of_t].map(|n| n.coefficients.iter().sum::<DVec3>().normalize_or_zero());
+                of_s.are_along(m + n) && of_t.are_along(m + n)
+            })
+        }
+        _ => false,
+    }
+}
+
+fn halved(s: &Moving, t: &Moving, depth: u32, proof: &dyn Fn(&Moving, &Moving) -> bool) -> bool {
+    if proof(s, t) {
+        return true;
+    }
+    let halves = |p: &Moving| [[p[0], middle(p)], [middle(p), p[1]]];
+    depth > 0 && halves(s).iter().zip(&halves(t)).all(|(s, t)| halved(s, t, depth - 1, proof))
+}
+
+fn middle(p: &Moving) -> [DVec3; 3] {
+    std::array::from_fn(|k| 0.5 * (p[0][k] + p[1][k]))
+}
+
+fn centre(p: &[DVec3; 3]) -> DVec3 {
+    (p[0] + p[1] + p[2]) / 3.0
+}
+
+fn normal(p: &[DVec3; 3]) -> DVec3 {
+    (p[1] - p[0]).cross(p[2] - p[0])
+}
+
+/// Whether all of one lies strictly before all of the other along a direction, at both ends in the same order.
+fn is_between(s: &Moving, t: &Moving, direction: DVec3) -> bool {
+    let largest = s.iter().chain(t).flatten().fold(DVec3::ZERO, |m, p| m.max(p.abs())).max_element();
+    let bound = ROUNDING * largest * direction.abs().element_sum();
+    let range = |p: &[DVec3; 3]| {
+        let along = p.map(|p| p.dot(direction));
+        (along[0].min(along[1]).min(along[2]), along[0].max(along[1]).max(along[2]))
+    };
+    let ranges = [0, 1].map(|end| (range(&s[end]), range(&t[end])));
+    ranges.iter().all(|((_, high), (low, _))| low - high > bound)
+        || ranges.iter().all(|((low, _), (_, high))| low - high > bound)
+}
+
+/// Whether offsets from a common corner lie strictly on one side of the plane across a direction, at both ends.
+fn is_within(far: &[[DVec3; 2]; 2], direction: DVec3) -> bool {
+    let sum = direction.abs().element_sum();
+    far.iter().flatten().all(|offset| offset.dot(direction) > ROUNDING * offset.abs().max_element() * sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::{Triangle, triangles_cross};
+    use proptest::prelude::*;
+
+    /// Whether they cross at one of many instants.
+    fn cross_at_times(s: &Moving, t: &Moving, ids: [[u32; 3]; 2]) -> bool {
+        (0..=64).any(|k| {
+            let part = f64::from(k) / 64.0;
+            let at = |p: &Moving| std::array::from_fn(|c| p[0][c].lerp(p[1][c], part));
+            triangles_cross(&Triangle { at: at(s), id: ids[0] }, &Triangle { at: at(t), id: ids[1] })
+        })
+    }
+
+    fn points() -> impl Strategy<Value = Vec<DVec3>> {
+        let coordinate = || (-4..5_i8).prop_map(f64::from);
+        prop::collection::vec((coordinate(), coordinate(), coordinate()).prop_map(DVec3::from), 12)
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_proven_apart_never_crosses(points in points(), shared in 0..3_usize, near in 0.0..1.0_f64) {
+            // Both ends are whole numbers, nearer to each other or further apart.
+            let end = |from: DVec3, k: usize| (near * points[k] + (1.0 - near) * from).round();
+            let s: Moving = [0, 1].map(|e| std::array::from_fn(|k| if e == 0 { points[k] } else { end(points[k], 6 + k) }));
+            let t: Moving = [0, 1].map(|e: usize| std::array::from_fn(|k| match (k < shared, e) {
+                (true, _) => s[e][2 - k],
+                (false, 0) => points[3 + k],
+                (false, _) => end(points[3 + k], 9 + k),
+            }));
+            let ids = [[0, 1, 2], std::array::from_fn(|k| if k < shared { 2 - k as u32 } else { 3 + k as u32 })];
+            if stay_apart(&s, &t, ids[0], ids[1], HALVINGS) {
+                prop_assert!(!cross_at_times(&s, &t, ids), "{s:?} {t:?} {ids:?}");
+            }
+        }
+    }
+
+    const FLOOR: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+
+    fn moved(by: DVec3) -> [DVec3; 3] {
+        FLOOR.map(|p| DVec3::from(p) + by)
+    }
+
+    #[test]
+    fn triangles_that_pass_by_are_proven_apart() {
+        // One slides below the other and up beside it, while both drift far.
+        let drift = DVec3::new(30.0, 20.0, 10.0);
+        let s = [moved(DVec3::ZERO), moved(drift)];
+        let t = [moved(-DVec3::Z), moved(drift + DVec3::new(9.0, 0.0, -0.5))];
+        assert!(stay_apart(&s, &t, [0, 1, 2], [3, 4, 5], HALVINGS));
+        let hinge = |tip: [f64; 3]| [DVec3::from(FLOOR[1]), DVec3::from(FLOOR[0]), DVec3::from(tip)];
+        let opening = [hinge([1.0, 0.1, 1.0]), hinge([1.0, -2.0, -1.0])];
+        assert!(stay_apart(&[s[0]; 2], &opening, [0, 1, 2], [1, 0, 3], HALVINGS));
+    }
+
+    #[test]
+    fn sabotage_triangles_that_pass_through_each_other_are_not() {
+        let s = [moved(DVec3::ZERO); 2];
+        let t = [moved(DVec3::Z), moved(-DVec3::Z)];
+        assert!(!stay_apart(&s, &t, [0, 1, 2], [3, 4, 5], HALVINGS));
+        let hinge = |tip: [f64; 3]| [DVec3::from(FLOOR[1]), DVec3::from(FLOOR[0]), DVec3::from(tip)];
+        let through = [hinge([1.0, 2.0, 1.0]), hinge([1.0, 2.0, -1.0])];
+        assert!(!stay_apart(&s, &through, [0, 1, 2], [1, 0, 3], HALVINGS));
+    }
+}
