@@ -17,7 +17,7 @@ use crate::{Error, Result};
 /// Warps, writes and says how it went.
 pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     let options = &order.options;
-    let scene = options.scene.scene(&order.layers)?;
+    let scene = order.scene()?;
     let outputs = Outputs::of(options, &scene)?;
     let Loaded { boundary, stack, settings, warnings } = load::load(&scene, &options.scene)?;
 
