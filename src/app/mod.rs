@@ -4,9 +4,9 @@
 //!
 //! | code | meaning |
 //! |---|---|
-//! | 0 | done; for `warp`: certified |
+//! | 0 | done; for `warp` and `record`: certified |
 //! | 1 | stopped, could not write, or a fault of this program |
-//! | 2 | the input or the options are bad |
+//! | 2 | the input or the options are bad, or nothing here can draw |
 //! | 3 | finished but not certified; the result lies next to its report |
 
 mod cancel;
@@ -16,6 +16,8 @@ mod load;
 pub mod options;
 mod outputs;
 mod progress;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod scene_options;
 mod warp;
 
@@ -64,6 +66,8 @@ fn run(order: Order) -> Result<Verdict> {
     match order {
         Order::Warp(order) => warp::run(*order),
         Order::Inspect(order) => inspect::run(&order),
+        #[cfg(feature = "record")]
+        Order::Record(order) => record::run(*order),
     }
 }
 

@@ -3,11 +3,15 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
+#[cfg(feature = "record")]
+use super::record::{RecordOptions, RecordOrder};
+pub use super::scene_options::ReferenceName;
 use super::scene_options::{SceneOptions, layers, number, source};
+use crate::Result;
 use crate::importance::Layer;
-use crate::scene::Source;
+use crate::scene::{Scene, Source};
 
 /// What the user ordered.
 #[derive(Debug)]
@@ -16,6 +20,9 @@ pub enum Order {
     Warp(Box<WarpOrder>),
     /// Say what is in a file.
     Inspect(InspectOptions),
+    /// Film the growth.
+    #[cfg(feature = "record")]
+    Record(Box<RecordOrder>),
 }
 
 /// `warp`: the options, and the importance among them in the order given.
@@ -45,6 +52,8 @@ struct CommandLine {
 enum Face {
     Warp(Box<WarpOptions>),
     Inspect(InspectOptions),
+    #[cfg(feature = "record")]
+    Record(Box<RecordOptions>),
 }
 
 /// Warp a mesh until local size is proportional to importance
@@ -117,6 +126,16 @@ pub enum Colour {
     Original,
 }
 
+impl WarpOrder {
+    /// The scene ordered.
+    ///
+    /// # Errors
+    /// As [`SceneOptions::scene`].
+    pub fn scene(&self) -> Result<Scene> {
+        self.options.scene.scene(&self.layers)
+    }
+}
+
 /// Reads the command line; the error prints itself, help and version included.
 ///
 /// # Errors
@@ -126,18 +145,21 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Resu
     Ok(match CommandLine::from_arg_matches(&matches)?.command {
         Face::Inspect(options) => Order::Inspect(options),
         Face::Warp(options) => {
-            let layers = match matches.subcommand_matches("warp") {
-                Some(matches) => layers(&options.scene, matches).map_err(in_context)?,
-                None => Vec::new(),
-            };
+            let layers = layers_of(&options.scene, &matches)?;
             Order::Warp(Box::new(WarpOrder { options: *options, layers }))
+        }
+        #[cfg(feature = "record")]
+        Face::Record(options) => {
+            let layers = layers_of(&options.scene, &matches)?;
+            Order::Record(Box::new(RecordOrder { options: *options, layers }))
         }
     })
 }
 
-/// A refusal with the usage below it.
-fn in_context(refusal: clap::Error) -> clap::Error {
-    refusal.with_cmd(&CommandLine::command())
+/// Importance among the options of the command given; a refusal has the usage below it.
+fn layers_of(options: &SceneOptions, matches: &ArgMatches) -> clap::error::Result<Vec<Layer>> {
+    let Some((_, matches)) = matches.subcommand() else { return Ok(Vec::new()) };
+    layers(options, matches).map_err(|refusal| refusal.with_cmd(&CommandLine::command()))
 }
 
 fn scale(text: &str) -> Result<f64, String> {

@@ -17,7 +17,7 @@ use crate::{Error, Result};
 /// Warps, writes and says how it went.
 pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     let options = &order.options;
-    let scene = options.scene.scene(&order.layers)?;
+    let scene = order.scene()?;
     if let Some(bytes) = load::picture_bytes(&scene)? {
         let outputs = Outputs::of(options, &scene, true)?;
         let loaded = load::load_picture(&scene, &options.scene, &bytes)?;

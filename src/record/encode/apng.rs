@@ -6,7 +6,7 @@ use image::RgbaImage;
 use png::{BlendOp, Compression, DisposeOp, EncodingError};
 
 use super::target::{Sink, Target};
-use super::{Encoder, Reel, changed};
+use super::{Encoder, Reel, Whole, changed};
 use crate::{Error, Result};
 
 /// An APNG on its way.
@@ -54,10 +54,10 @@ impl Encoder for Apng {
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<()> {
+    fn finish(self: Box<Self>) -> Result<Whole> {
         let Self { target, writer, .. } = *self;
         writer.finish().map_err(|e| failed(&target, e))?;
-        target.name()
+        Ok(target.whole())
     }
 }
 

@@ -8,7 +8,7 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use image::RgbaImage;
 
 use super::target::Target;
-use super::{Encoder, Reel};
+use super::{Encoder, Reel, Whole};
 use crate::{Error, Result};
 
 /// How ffmpeg writes films with one extension.
@@ -87,7 +87,7 @@ impl Recipe {
 }
 
 /// Whether ffmpeg is there and can do it.
-pub(super) fn check(recipe: Recipe, path: &Path, _reel: &Reel) -> Result<()> {
+pub(super) fn check(recipe: Recipe, path: &Path) -> Result<()> {
     let asked = Command::new("ffmpeg").args(["-hide_banner", "-encoders"]).stdin(Stdio::null()).output();
     let extension = recipe.extension;
     match asked {
@@ -130,7 +130,7 @@ impl Drop for Reaped {
 impl Ffmpeg {
     /// Starts ffmpeg.
     pub fn new(recipe: Recipe, path: &Path, reel: &Reel) -> Result<Self> {
-        check(recipe, path, reel)?;
+        check(recipe, path)?;
         let (target, sink) = Target::new(path)?;
         drop(sink);
         // A file, not a pipe: nobody has to read it while frames go the other way.
@@ -171,10 +171,10 @@ impl Encoder for Ffmpeg {
         written.map_err(|error| self.failed(error))
     }
 
-    fn finish(mut self: Box<Self>) -> Result<()> {
+    fn finish(mut self: Box<Self>) -> Result<Whole> {
         self.pipe = None;
         match self.child.0.wait() {
-            Ok(status) if status.success() => self.target.name(),
+            Ok(status) if status.success() => Ok(self.target.whole()),
             Ok(status) => Err(self.failed(io::Error::other(format!("ffmpeg ended with {status}")))),
             Err(error) => Err(self.failed(error)),
         }

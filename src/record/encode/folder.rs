@@ -7,8 +7,9 @@ use image::RgbaImage;
 use png::{Compression, EncodingError};
 use tempfile::TempDir;
 
-use super::{Encoder, Reel};
-use crate::export::{beside, write_atomically};
+use super::target::{Sink, Target};
+use super::{Encoder, Reel, Whole};
+use crate::export::beside;
 use crate::{Error, Result};
 
 /// Whether the folder can come to be: not there yet, or empty.
@@ -59,21 +60,34 @@ impl Encoder for Folder {
         write().map_err(|e| Error::writing(&self.path, e))
     }
 
-    fn finish(self: Box<Self>) -> Result<()> {
-        // An empty folder of that name gives way; where a name cannot be taken over, the temporary folder goes.
-        std::fs::rename(self.temporary.path(), &self.path).map_err(|e| Error::writing(&self.path, e))?;
-        // It has another name now, and stays.
-        let _ = self.temporary.keep();
-        Ok(())
+    fn finish(self: Box<Self>) -> Result<Whole> {
+        Ok(Whole::folder(self.path, self.temporary))
     }
 }
 
-/// Writes one picture as a PNG, whole or not at all.
-///
-/// # Errors
-/// [`Error::File`] where the system refuses.
-pub fn still(picture: &RgbaImage, transparent: bool, path: &Path) -> Result<()> {
-    write_atomically(path, |file| png(picture, transparent, file))
+/// A single picture on its way.
+pub(super) struct Picture {
+    target: Target,
+    sink: Sink,
+    transparent: bool,
+}
+
+impl Picture {
+    /// Opens one.
+    pub fn new(path: &Path, reel: &Reel) -> Result<Self> {
+        let (target, sink) = Target::new(path)?;
+        Ok(Self { target, sink, transparent: reel.transparent })
+    }
+}
+
+impl Encoder for Picture {
+    fn frame(&mut self, frame: &RgbaImage) -> Result<()> {
+        png(frame, self.transparent, &mut self.sink).map_err(|e| self.target.failed(e))
+    }
+
+    fn finish(self: Box<Self>) -> Result<Whole> {
+        self.target.finish(self.sink)
+    }
 }
 
 /// A PNG, in sRGB; without alpha where that says nothing.

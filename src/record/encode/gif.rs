@@ -7,7 +7,7 @@ use image::RgbaImage;
 
 use super::palette::{CLEAR, Palette};
 use super::target::{Sink, Target};
-use super::{Encoder, Reel};
+use super::{Encoder, Reel, Whole};
 use crate::{Error, Result};
 
 /// Most frames per second: browsers slow down what shows a frame for less than two hundredths of a second.
@@ -78,7 +78,7 @@ impl Encoder for Gif {
         self.encoder.write_frame(&picture).map_err(|e| failed(&self.target, e))
     }
 
-    fn finish(self: Box<Self>) -> Result<()> {
+    fn finish(self: Box<Self>) -> Result<Whole> {
         let Self { target, encoder, .. } = *self;
         let sink = encoder.into_inner().map_err(|e| failed(&target, e))?;
         target.finish(sink)

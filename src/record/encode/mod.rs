@@ -14,7 +14,7 @@ use std::path::Path;
 use image::RgbaImage;
 
 use crate::{Error, Result};
-pub use folder::still;
+pub use target::Whole;
 
 /// Turns frames into a file.
 pub trait Encoder: Send {
@@ -24,11 +24,11 @@ pub trait Encoder: Send {
     /// [`Error::File`] where the system refuses.
     fn frame(&mut self, frame: &RgbaImage) -> Result<()>;
 
-    /// Completes the file and gives it its name.
+    /// Completes the file; it has yet to be given its name.
     ///
     /// # Errors
     /// [`Error::File`] where the system refuses; nothing is left then.
-    fn finish(self: Box<Self>) -> Result<()>;
+    fn finish(self: Box<Self>) -> Result<Whole>;
 }
 
 /// What is to be encoded.
@@ -57,6 +57,8 @@ pub enum Format {
     Apng,
     /// A folder of numbered PNGs.
     PngFolder,
+    /// One PNG.
+    Still,
     /// What the program `ffmpeg` writes.
     Ffmpeg(ffmpeg::Recipe),
 }
@@ -65,14 +67,16 @@ pub enum Format {
 const PALETTE_FRAMES: usize = 5;
 
 impl Format {
-    /// The format a name asks for.
+    /// The format a name asks for, of a film or of a single picture.
     ///
     /// # Errors
     /// A name that asks for none.
-    pub fn of(path: &Path) -> Result<Self> {
+    pub fn of(path: &Path, is_still: bool) -> Result<Self> {
         let is_folder = path.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
+            Some("png") if is_still && !is_folder => Ok(Self::Still),
+            _ if is_still => Err(Error::in_file(path, "a still is written as .png; give it such a name")),
             _ if is_folder => Ok(Self::PngFolder),
             Some("png-folder") => Ok(Self::PngFolder),
             Some("mp4") => Ok(Self::Mp4),
@@ -101,8 +105,8 @@ impl Format {
             Self::Mp4 => mp4::check(path, reel),
             Self::Gif => gif::check(path, reel),
             Self::PngFolder => folder::check(path),
-            Self::Apng => Ok(()),
-            Self::Ffmpeg(recipe) => ffmpeg::check(recipe, path, reel),
+            Self::Apng | Self::Still => Ok(()),
+            Self::Ffmpeg(recipe) => ffmpeg::check(recipe, path),
         }
     }
 
@@ -127,6 +131,7 @@ impl Format {
             Self::Gif => Box::new(gif::Gif::new(path, reel, samples)?),
             Self::Apng => Box::new(apng::Apng::new(path, reel)?),
             Self::PngFolder => Box::new(folder::Folder::new(path, reel)?),
+            Self::Still => Box::new(folder::Picture::new(path, reel)?),
             Self::Ffmpeg(recipe) => Box::new(ffmpeg::Ffmpeg::new(recipe, path, reel)?),
         })
     }
@@ -171,11 +176,14 @@ mod tests {
             ("frames/", Format::PngFolder),
             ("frames.png-folder", Format::PngFolder),
         ] {
-            assert_eq!(Format::of(Path::new(name)).unwrap(), format, "{name}");
+            assert_eq!(Format::of(Path::new(name), false).unwrap(), format, "{name}");
         }
-        assert!(matches!(Format::of(Path::new("a.webm")), Ok(Format::Ffmpeg(_))));
-        for (name, expected) in [("a.png", "--still"), ("a.txt", ".mp4"), ("a", ".mp4")] {
-            let error = Format::of(Path::new(name)).unwrap_err().to_string();
+        assert!(matches!(Format::of(Path::new("a.webm"), false), Ok(Format::Ffmpeg(_))));
+        assert_eq!(Format::of(Path::new("a.png"), true).unwrap(), Format::Still);
+        for (name, is_still, expected) in
+            [("a.png", false, "--still"), ("a.txt", false, ".mp4"), ("a", false, ".mp4"), ("a.mp4", true, ".png")]
+        {
+            let error = Format::of(Path::new(name), is_still).unwrap_err().to_string();
             assert!(error.contains(expected), "{name}: {error}");
         }
     }

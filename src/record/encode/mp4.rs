@@ -16,7 +16,7 @@ use openh264::formats::YUVBuffer;
 use rayon::prelude::*;
 
 use super::target::{Sink, Target};
-use super::{Encoder, Reel};
+use super::{Encoder, Reel, Whole};
 use crate::{Error, Result};
 
 /// Largest picture OpenH264 takes: 4K, upright or across.
@@ -100,7 +100,7 @@ impl Encoder for Mp4 {
         self.muxer.write_video(seconds, &self.bytes, is_key).map_err(|e| of_muxer(&self.target, e))
     }
 
-    fn finish(self: Box<Self>) -> Result<()> {
+    fn finish(self: Box<Self>) -> Result<Whole> {
         let Self { target, mut muxer, .. } = *self;
         muxer.finish_in_place().map_err(|e| of_muxer(&target, e))?;
         target.finish(muxer.into_writer())

@@ -1,9 +1,9 @@
-//! A file on its way to its name.
+//! Files on their way to their names.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{NamedTempFile, TempPath};
+use tempfile::{NamedTempFile, TempDir, TempPath};
 
 use crate::export::beside;
 use crate::{Error, Result};
@@ -36,15 +36,62 @@ impl Target {
         Error::writing(&self.path, source.into())
     }
 
-    /// Writes out what is left, and gives the file its name.
-    pub fn finish(self, mut sink: Sink) -> Result<()> {
+    /// Writes out what is left.
+    pub fn finish(self, mut sink: Sink) -> Result<Whole> {
         sink.flush().map_err(|e| self.failed(e))?;
-        drop(sink);
-        self.name()
+        Ok(self.whole())
     }
 
-    /// Gives the file, written by someone else, its name.
+    /// The file, all of it written by someone else.
+    pub fn whole(self) -> Whole {
+        Whole { path: self.path, temporary: Temporary::File(self.temporary) }
+    }
+}
+
+/// A file or folder that is complete and waits for its name. Dropped without, it is gone.
+pub struct Whole {
+    path: PathBuf,
+    temporary: Temporary,
+}
+
+enum Temporary {
+    File(TempPath),
+    Folder(TempDir),
+}
+
+impl Whole {
+    /// A folder.
+    pub(super) fn folder(path: PathBuf, temporary: TempDir) -> Self {
+        Self { path, temporary: Temporary::Folder(temporary) }
+    }
+
+    /// Bytes on the disk.
+    pub fn bytes(&self) -> u64 {
+        let size = |path: &Path| std::fs::metadata(path).map_or(0, |m| m.len());
+        match &self.temporary {
+            Temporary::File(file) => size(file),
+            Temporary::Folder(folder) => {
+                let entries = std::fs::read_dir(folder.path()).into_iter().flatten().flatten();
+                entries.map(|entry| size(&entry.path())).sum()
+            }
+        }
+    }
+
+    /// Gives it its name.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the system refuses; it is gone then.
     pub fn name(self) -> Result<()> {
-        self.temporary.persist(&self.path).map_err(|e| Error::writing(&self.path, e.error))
+        let Self { path, temporary } = self;
+        match temporary {
+            Temporary::File(file) => file.persist(&path).map_err(|e| Error::writing(&path, e.error)),
+            Temporary::Folder(folder) => {
+                // An empty folder of that name gives way.
+                std::fs::rename(folder.path(), &path).map_err(|e| Error::writing(&path, e))?;
+                // It has another name now, and stays.
+                let _ = folder.keep();
+                Ok(())
+            }
+        }
     }
 }
