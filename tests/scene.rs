@@ -19,12 +19,13 @@ fn full(folder: &Path) -> Draft {
             Layer::Attribute { name: "heat".into(), range: Some((0.5, 2.0)) },
             Layer::Attribute { name: "size".into(), range: None },
             Layer::Values { path: folder.join("tables/v.csv") },
-            Layer::Regions { regions: folder.join("r.csv"), values: folder.join("w.csv") },
+            Layer::Regions { regions: folder.join("r.csv"), values: folder.join("w.csv"), per_area: false },
             Layer::Image { path: folder.join("map.png"), range: None },
         ],
         resolution: 96,
         fidelity: 0.9,
         keys: 12,
+        background: None,
     }
 }
 
