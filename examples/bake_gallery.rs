@@ -42,9 +42,9 @@ fn bake_human(human: &Human) -> Mesh {
 fn bake_hand(human: &Human) -> Mesh {
     let frame = human.arm.hand.frame;
     let field = |p: Vec3| cut(human.arm.distance(frame.world(p)), p.y + 0.10, 0.016);
-    let mut net = polygonize(&field, Vec3::new(-0.16, -0.13, -0.08), Vec3::new(0.16, 0.25, 0.12), CELL);
+    let mut net = polygonize(&field, Vec3::new(-0.18, -0.13, -0.08), Vec3::new(0.18, 0.28, 0.12), CELL);
     net.keep_largest();
-    remesh(&net, &field, &|p| human.edge_length(frame.world(p)).min(0.0035), Remesh { rounds: 6, reach: REACH })
+    remesh(&net, &field, &|p| human.edge_length(frame.world(p)).min(0.0038), Remesh { rounds: 6, reach: REACH })
 }
 
 fn bare(human: &Human, piece: &str, cell: f32) -> Mesh {

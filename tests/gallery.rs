@@ -5,10 +5,11 @@
 use std::collections::{BTreeSet, HashMap};
 use std::process::Command;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use homunculus::boundary::Boundary;
 use homunculus::gallery::human::{Human, scenes};
 use homunculus::gallery::{self, Model, with_values};
+use homunculus::voxel::{Grid, rasterize};
 
 fn human() -> Model {
     gallery::human_model().expect("the baked human reads").clone()
@@ -234,6 +235,109 @@ fn fingertips_stay_apart_at_96_cells() {
 #[test]
 fn sabotage_fingers_touch_on_a_coarse_lattice() {
     assert!(!touching_fingertips(&human(), 20.0).is_empty());
+}
+
+/// A finger or toe of one side: its triangles, and those of its outer part alone.
+struct Digit {
+    name: String,
+    all: Vec<[u32; 3]>,
+    outer: Vec<[u32; 3]>,
+}
+
+/// The ten fingers and ten toes by region (the four small toes share one: there the nearest counts). The outer part
+/// begins at a third of a finger, from its knuckle, and at half of a toe.
+fn digits(model: &Model) -> Vec<Digit> {
+    let human = Human::default();
+    let labels = &model.boundary.regions.as_ref().expect("a model has regions").of_vertex;
+    let share = |p: Vec3, base: Vec3, (tip, r): (Vec3, f32)| {
+        let along = (tip - base).normalize();
+        (p - base).dot(along) / ((tip - base).length() + r)
+    };
+    // Digit 0..5 thumb to little finger, 5..10 great to little toe, 10 more on the right; whether in the outer part.
+    let place = |v: u32| -> Option<(usize, bool)> {
+        let p = model.boundary.positions[v as usize].as_vec3();
+        let (q, side) = (Vec3::new(p.x.abs(), p.y, p.z), if p.x < 0.0 { 10 } else { 0 });
+        let region = model.region_names[labels[v as usize] as usize].as_str();
+        let finger = ["thumb", "index", "middle", "ring", "little"].iter().position(|name| region.starts_with(name));
+        if let Some(k) = finger {
+            let knots = human.arm.hand.fingers[k].knots;
+            let base = knots[usize::from(k == 0)].0;
+            return Some((side + k, share(human.arm.hand.frame.local(q), base, knots[3]) >= 1.0 / 3.0));
+        }
+        let toes = match region {
+            "great_toe" => 0..1,
+            "toes" => 1..5,
+            _ => return None,
+        };
+        let q = human.leg.foot_frame().local(q);
+        let off = |k: &usize| {
+            let [(a, _), _, (b, _)] = human.leg.toes()[*k].knots;
+            (q - a).reject_from(b - a).length()
+        };
+        let k = toes.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        let knots = human.leg.toes()[k].knots;
+        Some((side + 5 + k, share(q, knots[0].0, knots[2]) >= 0.5))
+    };
+    let places: Vec<_> = (0..labels.len() as u32).map(place).collect();
+    let names = ["thumb", "index", "middle", "ring", "little", "great toe", "2nd toe", "3rd toe", "4th toe", "5th toe"];
+    (0..20)
+        .map(|k| {
+            let keep = |outer_only: bool| {
+                let belongs = |v: &u32| places[*v as usize].is_some_and(|(d, outer)| d == k && (outer || !outer_only));
+                model.boundary.triangles.iter().copied().filter(|t| t.iter().all(belongs)).collect()
+            };
+            let name = format!("{} {}", if k < 10 { "left" } else { "right" }, names[k % 10]);
+            Digit { name, all: keep(false), outer: keep(true) }
+        })
+        .collect()
+}
+
+/// Pairs of digits of which the first has, in its outer part, cells that the second touches, as the engine rasterizes
+/// them at `resolution`.
+fn sharing_cells(model: &Model, resolution: u32) -> Vec<String> {
+    let grid = Grid::around(&model.boundary, resolution).expect("the model has an extent");
+    let cells = |triangles: &Vec<[u32; 3]>| {
+        assert!(!triangles.is_empty(), "each digit has triangles");
+        let part = Boundary::from_triangles("digit", model.boundary.positions.clone(), triangles.clone());
+        rasterize(&part, &grid)
+    };
+    let digits = digits(model);
+    let sets: Vec<_> = digits.iter().map(|d| (cells(&d.outer), cells(&d.all))).collect();
+    let mut sharing = Vec::new();
+    for (i, (outer, _)) in sets.iter().enumerate() {
+        for (j, (_, all)) in sets.iter().enumerate().filter(|(j, _)| *j != i) {
+            let count = outer.iter().zip(all).filter(|(a, b)| **a && **b).count();
+            if count > 0 {
+                sharing.push(format!("{} and {}: {count}", digits[i].name, digits[j].name));
+            }
+        }
+    }
+    sharing
+}
+
+#[test]
+fn every_finger_and_toe_is_alone_in_its_cells_at_96() {
+    assert_eq!(sharing_cells(&human(), 96), Vec::<String>::new());
+}
+
+#[test]
+fn sabotage_digits_that_share_cells_are_seen() {
+    assert!(!sharing_cells(&human(), 48).is_empty(), "a lattice twice as coarse");
+    // The tip of the left index, moved nearly onto the middle finger's.
+    let mut bent = human();
+    let k = bent.region_names.iter().position(|n| n == "index_fingertip").expect("there is one") as u32;
+    let towards = {
+        let human = Human::default();
+        let tip = |i: usize| human.arm.hand.frame.world(human.arm.hand.fingers[i].knots[3].0).as_dvec3();
+        (tip(2) - tip(1)) * 0.8
+    };
+    let labels = bent.boundary.regions.as_ref().expect("a model has regions").of_vertex.clone();
+    for (p, label) in bent.boundary.positions.iter_mut().zip(labels) {
+        if label == k && p.x > 0.0 {
+            *p += towards;
+        }
+    }
+    assert!(sharing_cells(&bent, 96).iter().any(|pair| pair.contains("left index")));
 }
 
 #[test]

@@ -58,7 +58,7 @@ impl Arm {
     /// Near-distance to arm and hand; `q` in the half x ≥ 0.
     pub fn distance(&self, q: Vec3) -> f32 {
         let f = self.limb(q);
-        if q.distance(self.hand.frame.origin) < 0.36 {
+        if q.distance(self.hand.frame.origin) < 0.38 {
             return union(f, self.hand.distance(q), 0.025);
         }
         f
@@ -71,7 +71,7 @@ impl Arm {
         let mut upper = self.upper_loft.distance(u);
         let deltoid = chain(
             u,
-            &[(v(0.004, -0.004, 0.0), 0.054), (v(-0.012, 0.055, 0.0), 0.048), (v(-0.018, 0.125, 0.0), 0.026)],
+            &[(v(0.002, -0.004, 0.0), 0.055), (v(-0.014, 0.055, 0.0), 0.049), (v(-0.020, 0.130, 0.0), 0.026)],
             0.03,
         );
         let biceps = ellipsoid(u, v(0.004, 0.175, 0.020), v(0.029, 0.080, 0.030));

@@ -1,21 +1,23 @@
-//! Brows, eyes, nose, mouth and ears on the bare head. Millimetres in the head's space; `q` is mirrored to x ≥ 0.
+//! Brows, eyes, nose and mouth on the bare head. Millimetres in the head's space; `q` is mirrored to x ≥ 0.
 
 use glam::Vec3;
 
-use crate::gallery::implicit::{ball, bump, chain, common, curve, cut, ellipsoid, round_cone, union};
+use super::ear::Ear;
+use crate::gallery::implicit::{bump, chain, common, curve, cut, ellipsoid, round_cone, stroke, tube, union};
 
-/// Centre and radius of the eyeball.
-pub const EYE: (Vec3, f32) = (Vec3::new(32.0, 0.0, 79.5), 12.6);
+/// Centre and half-axes of the eyeball: wider than a ball, so that it fills the corners of the lids.
+pub const EYE: (Vec3, Vec3) = (Vec3::new(31.5, 0.0, 79.0), Vec3::new(15.6, 12.8, 12.8));
 
-/// The curves of the face: brows, lips, the line of the mouth, the ears' rims.
+/// The curves of the face: brows, lids, lips and the line of the mouth; and the ear.
 #[derive(Debug)]
 pub struct Face {
     brow: Vec<Knot>,
+    hair: Vec<Knot>,
+    lid: Vec<Knot>,
     upper_lip: Vec<Knot>,
     lower_lip: Vec<Knot>,
     mouth_line: Vec<Knot>,
-    helix: Vec<Knot>,
-    antihelix: Vec<Knot>,
+    ear: Ear,
 }
 
 type Knot = (Vec3, f32);
@@ -24,51 +26,46 @@ impl Face {
     /// Proportions of the neoclassical canon: the mouth a third of the way from nose to chin, the ear as long as the nose.
     pub(crate) fn new() -> Self {
         let k = |x: f32, y: f32, z: f32, r: f32| (Vec3::new(x, y, z), r);
-        let corner = k(25.0, -72.4, 91.0, 2.0);
+        let corner = k(25.5, -72.4, 94.5, 2.0);
         let brow =
-            [k(5.0, 14.0, 93.0, 7.0), k(28.0, 18.5, 90.0, 7.0), k(46.0, 15.5, 77.0, 7.0), k(57.0, 2.0, 61.0, 7.0)];
+            [k(5.0, 13.0, 92.5, 7.0), k(28.0, 18.0, 90.0, 7.0), k(46.0, 15.5, 77.0, 7.0), k(57.0, 3.0, 61.0, 7.0)];
+        let hair = [k(11.0, 15.0, 0.0, 6.0), k(27.0, 20.0, 0.0, 6.5), k(42.0, 18.5, 0.0, 5.5), k(53.0, 11.0, 0.0, 4.0)];
+        let lid = [
+            k(17.5, 4.0, 0.0, 2.6),
+            k(24.0, 8.8, 0.0, 3.2),
+            k(32.0, 10.6, 0.0, 3.4),
+            k(41.0, 8.8, 0.0, 3.2),
+            k(48.0, 3.6, 0.0, 2.6),
+        ];
         let upper = [
-            k(-6.0, -67.0, 104.2, 4.0),
-            k(0.0, -67.8, 104.6, 3.8),
-            k(6.0, -67.0, 104.2, 4.0),
-            k(15.0, -69.4, 100.0, 3.3),
+            k(-6.0, -65.4, 103.6, 5.0),
+            k(0.0, -66.3, 104.2, 4.9),
+            k(6.0, -65.4, 103.6, 5.0),
+            k(15.5, -68.6, 100.0, 4.0),
             corner,
         ];
         let lower = [
-            k(-9.0, -76.6, 102.0, 4.8),
-            k(0.0, -76.9, 103.2, 5.2),
-            k(9.0, -76.6, 102.0, 4.8),
-            k(17.0, -74.8, 98.0, 3.2),
+            k(-9.0, -77.8, 102.0, 6.0),
+            k(0.0, -78.2, 102.8, 6.4),
+            k(9.0, -77.8, 102.0, 6.0),
+            k(18.0, -75.4, 98.2, 4.0),
             corner,
         ];
         let line = [
-            k(-7.0, -71.4, 108.6, 0.9),
-            k(0.0, -72.0, 109.4, 0.9),
-            k(7.0, -71.4, 108.6, 0.9),
-            k(15.0, -72.0, 104.2, 0.9),
-            k(22.0, -72.4, 97.6, 0.9),
+            k(-7.0, -71.2, 106.4, 1.3),
+            k(0.0, -71.9, 107.0, 1.3),
+            k(7.0, -71.2, 106.4, 1.3),
+            k(16.0, -72.2, 102.4, 1.3),
+            k(25.0, -72.6, 97.4, 1.0),
         ];
-        let helix = [
-            k(6.0, 1.0, 3.5, 2.2),
-            k(0.5, 12.0, 3.0, 2.6),
-            k(4.0, 24.0, 4.0, 2.9),
-            k(14.0, 29.5, 5.0, 3.0),
-            k(24.5, 24.0, 5.5, 3.0),
-            k(28.0, 12.0, 5.5, 2.9),
-            k(26.0, -2.0, 5.0, 2.7),
-            k(19.5, -15.0, 4.0, 2.9),
-            k(11.0, -25.0, 2.0, 4.2),
-            k(4.0, -23.0, 0.0, 3.6),
-        ];
-        let antihelix =
-            [k(14.0, 19.0, 2.5, 2.4), k(19.0, 8.0, 3.2, 2.6), k(17.0, -6.0, 3.2, 2.6), k(10.0, -13.5, 3.0, 2.4)];
         Self {
-            brow: curve(&brow, 4),
-            upper_lip: curve(&upper, 4),
-            lower_lip: curve(&lower, 4),
-            mouth_line: curve(&line, 4),
-            helix: curve(&helix, 3),
-            antihelix: curve(&antihelix, 3),
+            brow: curve(&brow, 5),
+            hair: curve(&hair, 5),
+            lid: curve(&lid, 4),
+            upper_lip: curve(&upper, 5),
+            lower_lip: curve(&lower, 5),
+            mouth_line: curve(&line, 5),
+            ear: Ear::new(),
         }
     }
 
@@ -79,73 +76,70 @@ impl Face {
         }
         let mut f = f;
         if q.z > 30.0 {
-            f = union(f, chain(q, &self.brow, 4.0), 18.0);
-            f = cut(f, ellipsoid(q, Vec3::new(32.0, 0.0, 103.0), Vec3::new(19.0, 12.0, 16.0)), 16.0);
-            f = nose(q, f);
+            f = union(f, tube(q, &self.brow), 18.0);
+            f = cut(f, ellipsoid(q, Vec3::new(32.0, 0.0, 104.0), Vec3::new(18.0, 12.0, 16.0)), 18.0);
+            f = Self::nose(q, f);
             f = self.mouth(p, q, f);
-            f = eyes(q, f);
+            f = Self::eye(q, f);
+            // The hair of the brow and the fold of the lid, whatever the depth of the skin there.
+            f -= 1.1 * stroke(q.with_z(0.0), &self.hair);
+            f += 0.9 * stroke(q.with_z(0.0), &self.lid);
         }
         if q.x < 45.0 { f } else { union(f, self.ear(q), 4.0) }
+    }
+
+    fn nose(q: Vec3, f: f32) -> f32 {
+        let v = Vec3::new;
+        // A tent that falls softly to the cheeks, the bridge on it, then the tip between its wings.
+        let side = round_cone(q, v(4.0, 0.0, 86.0), v(8.0, -31.0, 95.5), 9.0, 10.5);
+        let bridge =
+            chain(q, &[(v(0.0, 10.0, 90.0), 8.5), (v(0.0, -18.0, 100.5), 7.8), (v(0.0, -35.0, 110.5), 8.5)], 9.0);
+        let tip = ellipsoid(q, v(0.0, -38.0, 114.0), v(10.5, 9.0, 10.5));
+        let wing = ellipsoid(q, v(12.7, -43.0, 102.5), v(6.2, 7.0, 11.0));
+        let base = round_cone(q, v(0.0, -44.0, 113.5), v(0.0, -49.5, 98.0), 4.4, 6.0);
+        let mut f = union(f, side, 24.0);
+        let nose = union(union(union(bridge, tip, 14.0), wing, 11.0), base, 6.0);
+        f = union(f, nose, 11.0);
+        cut(f, ellipsoid(q, v(7.8, -50.0, 105.0), v(3.9, 6.6, 5.8)), 2.4)
     }
 
     fn mouth(&self, p: Vec3, q: Vec3, f: f32) -> f32 {
         let v = Vec3::new;
         // The teeth push the muzzle out; the lips are two rolls on it that meet in a line.
-        let muzzle = ellipsoid(q, v(0.0, -70.0, 77.0), v(35.0, 26.0, 27.0));
+        let muzzle = ellipsoid(q, v(0.0, -71.0, 75.0), v(36.0, 27.0, 27.0));
         let mut f = union(f, muzzle, 20.0);
-        f += 1.3 * bump(p.x, 5.5) * bump(p.y + 58.0, 10.0) * bump(p.z - 105.0, 14.0);
-        f += 2.0 * bump(q.distance(v(0.0, -87.0, 104.0)), 18.0);
-        f = union(f, self.lips(q), 4.0);
-        cut(f, chain(q, &self.mouth_line, 1.0), 3.0)
+        // Groove above the lip between its ridges, fold between lip and chin, dimple at the corner.
+        f += 1.5 * stroke(p, &[(v(0.0, -52.0, 104.0), 5.0), (v(0.0, -61.0, 106.0), 6.0)]);
+        f += 2.0 * bump(((q - v(0.0, -89.0, 101.0)) / v(24.0, 10.0, 16.0)).length(), 1.0);
+        f = union(f, self.lips(q), 3.0);
+        f += 1.2 * bump(q.distance(v(29.0, -73.5, 92.5)), 8.0);
+        cut(f, tube(q, &self.mouth_line), 2.4)
     }
 
     /// Near-distance to the two lips, millimetres.
     pub fn lips(&self, q: Vec3) -> f32 {
-        union(chain(q, &self.upper_lip, 2.0), chain(q, &self.lower_lip, 2.0), 7.0)
+        union(tube(q, &self.upper_lip), tube(q, &self.lower_lip), 2.0)
     }
 
     /// Near-distance to the ear, millimetres.
     pub fn ear(&self, q: Vec3) -> f32 {
-        let v = Vec3::new;
-        // The ear's own plane: x to the back along the plate, z outward from it; it stands off by some 22 degrees.
-        let (sin, cos) = 22.0_f32.to_radians().sin_cos();
-        let d = q - v(67.0, -20.0, -2.0);
-        let e = v(-d.z * cos + d.x * sin, d.y - 0.12 * d.z, d.x * cos + d.z * sin);
-        let plate = ellipsoid(e, v(11.0, 1.0, 1.4), v(17.5, 29.0, 4.4));
-        let root = ellipsoid(e, v(5.0, 5.0, -4.0), v(11.0, 28.0, 7.0));
-        let mut ear = union(union(plate, root, 6.0), chain(e, &self.helix, 1.0), 5.0);
-        ear = union(ear, chain(e, &self.antihelix, 1.0), 5.0);
-        ear = cut(ear, ellipsoid(e, v(8.5, -2.0, 6.6), v(6.5, 8.5, 5.0)), 3.0);
-        union(ear, ellipsoid(e, v(0.5, -5.0, 4.0), v(3.4, 5.5, 3.2)), 3.0)
+        self.ear.distance(q)
     }
-}
 
-fn nose(q: Vec3, f: f32) -> f32 {
-    let v = Vec3::new;
-    let bridge = chain(q, &[(v(0.0, 6.0, 93.0), 7.0), (v(0.0, -18.0, 106.0), 6.5), (v(0.0, -36.0, 115.5), 8.0)], 10.0);
-    let side = round_cone(q, v(4.0, -4.0, 88.0), v(8.0, -36.0, 95.0), 8.0, 11.0);
-    let tip = ellipsoid(q, v(0.0, -39.0, 116.5), v(9.5, 8.0, 9.0));
-    let wing = ellipsoid(q, v(11.5, -42.5, 104.5), v(6.0, 6.5, 9.0));
-    let base = round_cone(q, v(0.0, -44.0, 114.0), v(0.0, -50.0, 98.0), 4.5, 6.0);
-    let mut nose = union(bridge, side, 18.0);
-    nose = union(nose, tip, 10.0);
-    nose = union(nose, wing, 7.0);
-    nose = union(nose, base, 5.0);
-    let f = union(f, nose, 14.0);
-    let nostril = chain(q, &[(v(7.0, -52.5, 111.0), 3.2), (v(7.5, -44.0, 106.0), 2.6)], 2.0);
-    cut(f, nostril, 2.0)
-}
-
-fn eyes(q: Vec3, f: f32) -> f32 {
-    let (centre, radius) = EYE;
-    let d = q - centre;
-    let f = union(f, ball(q, centre, radius + 2.4), 9.0);
-    // The opening: an almond between two arcs, inner corner a little lower.
-    let (x, y) = (d.x, d.y - 0.06 * d.x);
-    let upper = 5.8 - 0.0250 * x * x - y;
-    let lower = y + 4.4 - 0.0195 * x * x;
-    let front = common(common(-upper, -lower, 1.0), -(d.z - 4.0), 1.0);
-    let f = cut(f, front, 2.0);
-    let iris = 0.6 * bump(d.truncate().length(), 3.2) * f32::from(d.z > 0.0);
-    union(f, ball(q, centre, radius) + iris, 0.8)
+    fn eye(q: Vec3, f: f32) -> f32 {
+        let (centre, radii) = EYE;
+        let d = q - centre;
+        let f = union(f, ellipsoid(q, centre, radii + 3.2), 6.0);
+        // The opening: an almond between two arcs, the inner corner a little lower.
+        let (x, y) = (d.x, d.y - 0.08 * d.x);
+        let (upper, lower) = (y - 5.6 + 0.0250 * x * x, -4.4 - y + 0.0195 * x * x);
+        let opening = common(common(upper, lower, 1.2), 5.0 - d.z, 1.0);
+        let f = cut(f, opening, 2.6);
+        // Cornea and pupil give the eye a direction to look in.
+        let gaze = (d - Vec3::new(-0.8, 0.6, 0.0)).truncate().length();
+        let front = f32::from(d.z > 0.0);
+        let ball = ellipsoid(q, centre, radii)
+            - front * (0.7 * bump(gaze, 7.5) - 1.4 * bump(gaze, 3.4) - 0.4 * bump(gaze - 6.2, 1.6));
+        union(f, ball, 1.6)
+    }
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::finger::nail;
 use crate::gallery::implicit::{Frame, Loft, Station, ball, bump, chain, common, ellipsoid, round_cone, union};
 
 /// One leg with its foot.
@@ -19,6 +20,21 @@ pub struct Toe {
     pub knots: [(Vec3, f32); 3],
 }
 
+impl Toe {
+    /// Near-distance; `p` in the foot's frame.
+    fn distance(&self, p: Vec3) -> f32 {
+        let [_, (joint, _), (tip, r)] = self.knots;
+        let f = chain(p, &self.knots, 0.004);
+        if f > 0.03 {
+            return f;
+        }
+        let along = ((tip - joint) * Vec3::new(1.0, 0.0, 1.0)).normalize();
+        let side = along.cross(Vec3::Y);
+        let d = p - tip;
+        f + nail(Vec3::new(d.dot(side), d.dot(along) - 0.1 * r, d.y), r)
+    }
+}
+
 /// Where the foot stands: below the ankle, on the ground.
 const ANKLE: Vec3 = Vec3::new(0.151, 0.0, -0.018);
 
@@ -27,11 +43,11 @@ impl Leg {
     pub(crate) fn new() -> Self {
         let s = Station::between;
         let shank = [
-            s(0.940, 0.045, 0.125, 0.030, -0.040, 2.0),
-            s(0.895, 0.022, 0.154, 0.064, -0.068, 2.1),
-            s(0.840, 0.008, 0.173, 0.083, -0.083, 2.1),
-            s(0.760, 0.016, 0.185, 0.089, -0.084, 2.1),
-            s(0.680, 0.036, 0.189, 0.085, -0.077, 2.1),
+            s(0.940, 0.040, 0.140, 0.036, -0.046, 2.0),
+            s(0.895, 0.022, 0.165, 0.066, -0.070, 2.1),
+            s(0.840, 0.008, 0.177, 0.083, -0.083, 2.1),
+            s(0.760, 0.016, 0.184, 0.089, -0.084, 2.1),
+            s(0.680, 0.036, 0.186, 0.085, -0.077, 2.1),
             s(0.600, 0.058, 0.187, 0.073, -0.067, 2.1),
             s(0.540, 0.073, 0.181, 0.061, -0.057, 2.2),
             s(0.490, 0.080, 0.177, 0.054, -0.051, 2.3),
@@ -46,7 +62,7 @@ impl Leg {
         ];
         let mut ordered = shank;
         ordered.reverse();
-        let foot = Frame::new(ANKLE, Vec3::Y, Vec3::new(0.20, 0.0, 1.0).normalize());
+        let foot = Frame::new(ANKLE, Vec3::Y, Vec3::new(0.10, 0.0, 1.0).normalize());
         Self { shank: Loft::new(&ordered, [0.03, 0.05]), foot, toes: toes() }
     }
 
@@ -87,25 +103,31 @@ impl Leg {
         let tendon = round_cone(p, v(0.0, 0.250, -0.018), v(0.0, 0.045, -0.048), 0.008, 0.017);
         let inner = chain(
             p,
-            &[(v(-0.008, 0.040, -0.015), 0.030), (v(-0.020, 0.040, 0.055), 0.025), (v(-0.030, 0.022, 0.128), 0.021)],
+            &[(v(-0.008, 0.040, -0.015), 0.030), (v(-0.022, 0.040, 0.055), 0.026), (v(-0.039, 0.022, 0.132), 0.021)],
             0.02,
         );
         let outer = chain(
             p,
-            &[(v(0.010, 0.032, -0.015), 0.027), (v(0.024, 0.024, 0.050), 0.021), (v(0.038, 0.015, 0.105), 0.014)],
+            &[(v(0.010, 0.032, -0.015), 0.027), (v(0.027, 0.024, 0.050), 0.022), (v(0.047, 0.015, 0.106), 0.015)],
             0.02,
         );
         let instep = chain(
             p,
-            &[(v(0.0, 0.080, 0.004), 0.032), (v(-0.006, 0.052, 0.055), 0.026), (v(-0.004, 0.024, 0.122), 0.017)],
+            &[(v(0.0, 0.082, 0.004), 0.033), (v(-0.008, 0.054, 0.055), 0.028), (v(-0.010, 0.024, 0.130), 0.017)],
             0.03,
         );
-        let ankles = ball(p, v(-0.026, 0.088, 0.004), 0.0125).min(ball(p, v(0.029, 0.076, -0.004), 0.012));
+        let ankles = ball(p, v(-0.026, 0.088, 0.004), 0.0108).min(ball(p, v(0.029, 0.076, -0.004), 0.0104));
         let mut f = union(union(inner, outer, 0.03), instep, 0.03);
         f = union(union(f, heel, 0.03), tendon, 0.03);
-        f = union(f, ankles, 0.02);
+        f = union(f, ankles, 0.028);
         for toe in &self.toes {
-            f = union(f, chain(p, &toe.knots, 0.004), 0.010);
+            // The bone behind it, from the middle of the foot to the toe's ball.
+            let (base, r) = toe.knots[0];
+            let head = Vec3::new(base.x, 0.0195, base.z - 0.004);
+            f = union(f, round_cone(p, v(0.25 * base.x - 0.004, 0.044, 0.045), head, 0.026, 1.15 * r + 0.005), 0.022);
+        }
+        for toe in &self.toes {
+            f = union(f, toe.distance(p), 0.012);
         }
         // The ground flattens the sole.
         common(f, -p.y, 0.012)
@@ -113,17 +135,18 @@ impl Leg {
 }
 
 fn toes() -> [Toe; 5] {
-    // Base x, z; direction outward in degrees; length; radius at the waist and at the pad: metres, a tenth over life.
+    // Base x, z; direction outward in degrees; length; radius at the waist and at the pad: metres, a fifth over life.
+    // Splayed, so that no two toes meet one cell over their outer half at 96 cells along the body.
     let table: [(f32, f32, f32, f32, f32, f32); 5] = [
-        (-0.034, 0.136, -7.0, 0.053, 0.0124, 0.0136),
-        (-0.007, 0.138, 1.0, 0.048, 0.0088, 0.0100),
-        (0.013, 0.130, 10.0, 0.044, 0.0084, 0.0095),
-        (0.031, 0.118, 19.0, 0.039, 0.0080, 0.0091),
-        (0.046, 0.104, 29.0, 0.033, 0.0078, 0.0088),
+        (-0.048, 0.142, -19.0, 0.062, 0.0126, 0.0140),
+        (-0.016, 0.150, -3.0, 0.060, 0.0090, 0.0100),
+        (0.013, 0.145, 13.0, 0.057, 0.0086, 0.0096),
+        (0.040, 0.132, 30.0, 0.054, 0.0082, 0.0092),
+        (0.063, 0.113, 48.0, 0.050, 0.0080, 0.0090),
     ];
     table.map(|(x, z, degrees, length, waist, pad)| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let along = |t: f32, y: f32| Vec3::new(x + sin * length * t, y, z + cos * length * t);
-        Toe { knots: [(along(-0.2, 0.020), waist * 1.15), (along(0.45, 0.017), waist), (along(1.0, pad * 0.95), pad)] }
+        Toe { knots: [(along(-0.2, 0.020), waist * 1.15), (along(0.50, 0.0175), waist), (along(1.0, pad * 0.95), pad)] }
     })
 }

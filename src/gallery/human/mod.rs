@@ -3,7 +3,9 @@
 //! Y is up, the face looks along +Z, lengths are metres, the soles stand on y = 0 and the crown is at 1.75.
 
 mod arm;
+mod ear;
 mod face;
+mod finger;
 mod hand;
 mod head;
 mod leg;
@@ -12,7 +14,8 @@ mod torso;
 mod values;
 
 pub use arm::Arm;
-pub use hand::{Finger, Hand};
+pub use finger::Finger;
+pub use hand::Hand;
 pub use head::Head;
 pub use leg::{Leg, Toe};
 pub use regions::{NAMES, memberships};
@@ -44,9 +47,9 @@ impl Default for Human {
 
 impl Human {
     /// Lowest corner of a box around the body.
-    pub const LOW: Vec3 = Vec3::new(-0.75, -0.02, -0.20);
+    pub const LOW: Vec3 = Vec3::new(-0.79, -0.02, -0.20);
     /// Highest corner.
-    pub const HIGH: Vec3 = Vec3::new(0.75, 1.78, 0.26);
+    pub const HIGH: Vec3 = Vec3::new(0.79, 1.78, 0.26);
 
     /// Near-distance to the skin, metres: negative inside. Parts farther than their melt are not computed.
     pub fn distance(&self, p: Vec3) -> f32 {
@@ -73,17 +76,22 @@ impl Human {
         let q = Vec3::new(p.x.abs(), p.y, p.z);
         let near = |centre: Vec3, inner: f32, outer: f32, fine: f32| {
             let t: f32 = ((q.distance(centre) - inner) / (outer - inner)).clamp(0.0, 1.0);
-            fine + t * (0.0104 - fine)
+            fine + t * (0.0120 - fine)
         };
         let hand = self.arm.hand.frame.world(Vec3::new(-0.01, 0.11, 0.0));
+        let tip = |digit: &Finger| near(self.arm.hand.frame.world(digit.knots[3].0), 0.013, 0.11, 0.0016);
+        let tips = self.arm.hand.fingers.iter().map(tip);
         [
-            near(Vec3::new(0.032, 1.638, 0.090), 0.017, 0.32, 0.0016),
-            near(Vec3::new(0.0, 1.580, 0.105), 0.030, 0.34, 0.0019),
-            near(Vec3::new(0.082, 1.620, -0.012), 0.038, 0.32, 0.0021),
-            near(hand, 0.115, 0.40, 0.0029),
-            near(Vec3::new(0.165, 0.02, 0.08), 0.120, 0.55, 0.0037),
+            near(Vec3::new(0.032, 1.638, 0.090), 0.018, 0.19, 0.0012),
+            near(Vec3::new(0.0, 1.568, 0.103), 0.028, 0.23, 0.0015),
+            near(Vec3::new(0.0, 1.592, 0.110), 0.016, 0.23, 0.0014),
+            near(Vec3::new(0.082, 1.620, -0.012), 0.034, 0.20, 0.0020),
+            near(Vec3::new(0.0, 1.047, 0.105), 0.012, 0.16, 0.0040),
+            near(hand, 0.125, 0.36, 0.0033),
+            near(Vec3::new(0.170, 0.02, 0.09), 0.130, 0.45, 0.0040),
         ]
         .into_iter()
-        .fold(0.0096, f32::min)
+        .chain(tips)
+        .fold(0.0112, f32::min)
     }
 }

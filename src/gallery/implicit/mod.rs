@@ -94,6 +94,21 @@ pub fn chain(p: Vec3, knots: &[(Vec3, f32)], melt: f32) -> f32 {
         .unwrap_or(f32::INFINITY)
 }
 
+/// Distance to round cones along a polyline, unmelted: for fine curves, whose many joints a melt would turn to beads.
+pub fn tube(p: Vec3, knots: &[(Vec3, f32)]) -> f32 {
+    knots.windows(2).map(|k| round_cone(p, k[0].0, k[1].0, k[0].1, k[1].1)).fold(f32::INFINITY, f32::min)
+}
+
+/// A stroke of the modelling tool: how much of it is felt at `p`, 1 on the polyline and 0 from its radii on.
+pub fn stroke(p: Vec3, knots: &[(Vec3, f32)]) -> f32 {
+    let near = |k: &[(Vec3, f32)]| {
+        let (from, along) = (p - k[0].0, k[1].0 - k[0].0);
+        let t = (from.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        bump((from - along * t).length(), k[0].1 + t * (k[1].1 - k[0].1))
+    };
+    knots.windows(2).map(near).fold(0.0, f32::max)
+}
+
 /// A smooth curve through `(point, radius)` knots as a finer polyline: Catmull-Rom, `pieces` per span.
 pub fn curve(knots: &[(Vec3, f32)], pieces: usize) -> Vec<(Vec3, f32)> {
     let Some(last) = knots.len().checked_sub(1) else { return Vec::new() };
@@ -137,7 +152,7 @@ pub fn common(a: f32, b: f32, melt: f32) -> f32 {
 
 /// Both halves as the half x ≥ 0; rounded within `soft` of the mid-plane, so that no crease runs down the middle.
 pub fn mirrored(p: Vec3, soft: f32) -> Vec3 {
-    Vec3::new((p.x * p.x + soft * soft).sqrt() - soft, p.y, p.z)
+    Vec3::new(p.x * p.x / (p.x * p.x + soft * soft).sqrt().max(f32::MIN_POSITIVE), p.y, p.z)
 }
 
 /// A bump: 1 at distance 0, 0 from `radius` on, twice differentiable.
