@@ -55,9 +55,11 @@ pub mod export;
 pub mod film;
 pub mod gallery;
 pub mod importance;
+pub mod paint;
 pub mod reference;
 pub mod scene;
 pub mod schedule;
+pub mod session;
 pub mod transfer;
 pub mod voxel;
 

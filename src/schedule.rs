@@ -23,12 +23,13 @@ use crate::{
     certificate::{certify, distortion, fidelity},
     collision::{
         Shell,
-        plugin::{CollisionPlugin, CollisionProblem, Growing, Shells, Warped},
+        Growth, grow,
+        plugin::{BoundaryAtRisk, CollisionPlugin, CollisionProblem, Growing, Holds, Rotations, Shells, Sizes, Warped},
     },
     diagnostics::Stopwatch,
     edge::plugin::{EdgePlugin, LinearSolution},
     film::{
-        Keyframe,
+        Film, Keyframe,
         plugin::{FilmPlugin, Reel},
     },
     importance::{
@@ -268,29 +269,135 @@ pub fn warp(
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<Outcome> {
-    check_resolution(settings.resolution)?;
-    let mut app = solver(settings.reference);
-    let world = app.world_mut();
-    let domain = Domain {
+    let mut run = Run::new(Domain {
         boundary: Arc::new(boundary.clone()),
         importance: Arc::new(importance.clone()),
         settings: settings.clone(),
-    };
-    let entity = world.spawn(domain).id();
+    })?;
     loop {
-        observer.progress(&progress(world, entity));
+        observer.progress(&run.progress());
         if observer.cancelled() {
             return Err(Error::Cancelled);
         }
-        world.run_schedule(Solve);
-        if let Some(error) = world.resource_mut::<Failure>().0.take() {
-            return Err(error);
-        }
-        if world.get::<Growing>(entity).is_some_and(|g| g.0.done()) {
-            break;
+        if run.step()? {
+            return run.outcome();
         }
     }
-    outcome(world, entity).ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+}
+
+/// One domain on its way, an iteration at a time.
+pub struct Run {
+    app: App,
+    entity: Entity,
+}
+
+impl Run {
+    /// A domain of which nothing is known yet.
+    ///
+    /// # Errors
+    /// A resolution out of range.
+    pub fn new(domain: Domain) -> Result<Self> {
+        check_resolution(domain.settings.resolution)?;
+        let mut app = solver(domain.settings.reference);
+        let entity = app.world_mut().spawn(domain).id();
+        Ok(Self { app, entity })
+    }
+
+    /// Runs [`Solve`] once. Whether λ = 1 has settled.
+    ///
+    /// # Errors
+    /// What a stage refuses.
+    pub fn step(&mut self) -> Result<bool> {
+        let world = self.app.world_mut();
+        world.run_schedule(Solve);
+        match world.resource_mut::<Failure>().0.take() {
+            Some(error) => Err(error),
+            None => Ok(world.get::<Growing>(self.entity).is_some_and(|g| g.0.done())),
+        }
+    }
+
+    /// Where it is; the stage named is the one about to run.
+    pub fn progress(&self) -> Progress {
+        progress(self.app.world(), self.entity)
+    }
+
+    /// A component of the domain.
+    pub fn get<C: Component>(&self) -> Option<&C> {
+        self.app.world().get(self.entity)
+    }
+
+    /// Gives the domain components: what is there already no stage computes.
+    pub fn insert(&mut self, components: impl Bundle) {
+        self.app.world_mut().entity_mut(self.entity).insert(components);
+    }
+
+    /// Seconds per stage so far.
+    pub fn seconds(&self) -> Vec<(&'static str, f64)> {
+        self.app.world().resource::<Stopwatch>().seconds()
+    }
+
+    /// Takes another importance, with its linear solution, and other settings but for the resolution, and grows from rest
+    /// again. What hangs on the lattice alone stays.
+    pub fn restart(&mut self, domain: Domain, importance: Importance, linear: LinearSolution) {
+        let mut entity = self.app.world_mut().entity_mut(self.entity);
+        if let (Some(Lattice(complex)), Some(CollisionProblem(problem))) =
+            (entity.get::<Lattice>(), entity.get::<CollisionProblem>())
+        {
+            let (complex, mut problem) = (complex.clone(), problem.clone());
+            problem.set_importance(&complex, &importance.nodes);
+            problem.fidelity = domain.settings.fidelity;
+            problem.from = None;
+            let growth = Growth::of(domain.settings.keys, &problem.importance);
+            entity.insert((CollisionProblem(problem), Growing(growth), Warped(complex.rest.clone())));
+            entity.insert((Rotations::default(), Holds::default(), BoundaryAtRisk::default())).remove::<Reel>();
+        }
+        entity.insert((domain, importance, linear));
+        *self.app.world_mut().resource_mut::<Stopwatch>() = Stopwatch::default();
+    }
+
+    /// The same without going back to rest: the present state, which is valid, is the first guess, and the sizes asked for
+    /// go from what they are to what they will be. The film then begins at the present state. False, and nothing changes,
+    /// where there is no state that could be gone on from.
+    pub fn go_on(&mut self, domain: Domain, importance: Importance, linear: LinearSolution) -> bool {
+        let mut entity = self.app.world_mut().entity_mut(self.entity);
+        let Some(mut shells) = entity.get_mut::<Shells>().map(|mut shells| std::mem::take(&mut shells.0)) else {
+            return false;
+        };
+        let start = (|| {
+            let (Lattice(complex), CollisionProblem(problem)) = (entity.get()?, entity.get()?);
+            let (Warped(warped), Sizes(sizes), Reel(film)) = (entity.get()?, entity.get()?, entity.get()?);
+            let certificate = certify(complex, &mut shells, warped);
+            if certificate.certified() {
+                return Some((warped.clone(), certificate, sizes.size.clone()));
+            }
+            let last = film.keyframes().last().filter(|last| last.certificate.certified())?;
+            let size = grow(complex, problem, last.lambda).size;
+            Some((last.positions.clone(), last.certificate.clone(), size))
+        })();
+        let parts = entity.get::<Lattice>().zip(entity.get::<CollisionProblem>());
+        let parts = parts.map(|(lattice, problem)| (lattice.0.clone(), problem.0.clone()));
+        let ready = start.zip(parts).filter(|((_, _, size), (complex, _))| size.len() == complex.cells.len());
+        entity.insert(Shells(shells));
+        let Some(((positions, certificate, size), (complex, mut problem))) = ready else { return false };
+        problem.set_importance(&complex, &importance.nodes);
+        problem.fidelity = domain.settings.fidelity;
+        let change = size.iter().zip(&problem.importance).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f32::max);
+        problem.from = Some(size);
+        let mut film = Film::default();
+        film.push(Keyframe { lambda: 0.0, positions: positions.clone(), certificate });
+        entity.insert((CollisionProblem(problem), Growing(Growth::change(change)), Warped(positions), Reel(film)));
+        entity.insert((domain, importance, linear));
+        true
+    }
+
+    /// What came of it, once a [`step`](Self::step) has said that all is done. The film is mended.
+    ///
+    /// # Errors
+    /// A fault, if it is not done.
+    pub fn outcome(&mut self) -> Result<Outcome> {
+        outcome(self.app.world_mut(), self.entity)
+            .ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+    }
 }
 
 /// Where a domain is; the stage named is the one about to run.
@@ -318,9 +425,23 @@ fn progress(world: &World, entity: Entity) -> Progress {
 }
 
 fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
-    let mut watch = world.remove_resource::<Stopwatch>()?;
+    let mut watch = std::mem::take(&mut *world.resource_mut::<Stopwatch>());
     let mut shells = std::mem::take(&mut world.get_mut::<Shells>(entity)?.0);
     let mut film = std::mem::take(&mut world.get_mut::<Reel>(entity)?.0);
+    let outcome = assemble(world, entity, &mut watch, &mut shells, &mut film);
+    // Given back: a change of importance goes on with them.
+    world.entity_mut(entity).insert((Shells(shells), Reel(film)));
+    world.insert_resource(watch);
+    outcome
+}
+
+fn assemble(
+    world: &World,
+    entity: Entity,
+    watch: &mut Stopwatch,
+    shells: &mut [Shell],
+    film: &mut Film,
+) -> Option<Outcome> {
     let get = world.get_entity(entity).ok()?;
     let (domain, Lattice(complex), Bound(binding)) = (get.get::<Domain>()?, get.get::<Lattice>()?, get.get::<Bound>()?);
     let CollisionProblem(problem) = get.get::<CollisionProblem>()?;
@@ -328,7 +449,7 @@ fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
 
     let classic = watch.time("classic", || certify(complex, &mut shells[..1], &linear.0));
     if domain.settings.reference.is_none() {
-        watch.time("certificate", || film.mend(complex, &mut shells, &problem.importance));
+        watch.time("certificate", || film.mend(complex, shells, &problem.importance));
     }
     let frames: Vec<Frame> = watch.time("transfer", || {
         let frame = |k: &Keyframe| Frame {
@@ -373,7 +494,8 @@ fn input_summary(boundary: &Boundary, self_intersections: usize) -> InputSummary
     }
 }
 
-fn domain_summary(complex: &Complex, resolution: u32, suspected_welds: usize) -> DomainSummary {
+/// A complex in numbers.
+pub(crate) fn domain_summary(complex: &Complex, resolution: u32, suspected_welds: usize) -> DomainSummary {
     DomainSummary {
         resolution,
         cell_size: complex.grid.cell_size,

@@ -57,6 +57,19 @@ impl Growth {
         Self { steps, keys: keys.max(1), step: 0, iteration: 0, motion: f32::INFINITY, patience: SETTLING_ITERATIONS }
     }
 
+    /// Plans the growth to `[cells]` sizes.
+    pub fn of(keys: usize, importance: &[f32]) -> Self {
+        let (low, high) = importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
+        Self::plan(keys, low, high)
+    }
+
+    /// Plans the way between two sizes that differ by at most `ln_change` in the logarithm: one keyframe, at its end.
+    pub fn change(ln_change: f32) -> Self {
+        let count = (ln_change / LN_SIZE_PER_STEP).ceil().max(1.0) as usize;
+        let steps = (1..=count).map(|k| k as f32 / count as f32).collect();
+        Self { steps, keys: 1, step: 0, iteration: 0, motion: f32::INFINITY, patience: SETTLING_ITERATIONS }
+    }
+
     /// λ now.
     pub fn lambda(&self) -> f32 {
         self.steps.get(self.step).copied().unwrap_or(1.0)

@@ -90,10 +90,10 @@ fn start(
 ) {
     for (entity, domain, Lattice(complex), importance) in &lattices {
         let problem = watch.time("grow", || Problem::new(complex, &importance.nodes, domain.settings.fidelity));
-        let (low, high) = problem.importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
+        let growth = Growth::of(domain.settings.keys, &problem.importance);
         commands.entity(entity).insert((
             CollisionProblem(problem),
-            Growing(Growth::plan(domain.settings.keys, low, high)),
+            Growing(growth),
             Warped(complex.rest.clone()),
             Shells(vec![Shell::skin(complex)]),
             (Sizes::default(), Rotations::default(), Targets::default(), Touching::default(), Proposed::default()),

@@ -1,5 +1,7 @@
 //! Voxelize: gives a domain its lattice.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 
 use super::{Complex, suspected_welds, voxelize};
@@ -10,7 +12,7 @@ use crate::{
 
 /// C and C_t of a domain.
 #[derive(Component, Debug)]
-pub struct Lattice(pub Complex);
+pub struct Lattice(pub Arc<Complex>);
 
 /// Cells of a domain that may glue two sheets of its surface.
 #[derive(Component, Debug)]
@@ -36,7 +38,7 @@ fn voxelize_new(
             Ok(complex) => {
                 let welds =
                     watch.time("input", || suspected_welds(&domain.boundary, &domain.boundary.welded(), &complex));
-                commands.entity(entity).insert((Lattice(complex), SuspectedWelds(welds)));
+                commands.entity(entity).insert((Lattice(Arc::new(complex)), SuspectedWelds(welds)));
             }
             Err(error) => failure.0 = Some(error),
         }
