@@ -61,6 +61,8 @@ pub mod scene;
 pub mod schedule;
 pub mod session;
 pub mod transfer;
+#[cfg(feature = "render")]
+pub mod view;
 pub mod voxel;
 
 pub use error::{Error, Result};
