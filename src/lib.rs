@@ -56,6 +56,8 @@ pub mod film;
 pub mod gallery;
 pub mod importance;
 pub mod paint;
+#[cfg(feature = "window")]
+pub mod panel;
 pub mod reference;
 pub mod scene;
 pub mod schedule;

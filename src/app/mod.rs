@@ -13,6 +13,8 @@ mod cancel;
 mod inspect;
 pub mod options;
 mod outputs;
+#[cfg(feature = "window")]
+pub mod play;
 mod progress;
 mod warp;
 
@@ -61,6 +63,8 @@ fn run(order: Order) -> Result<Verdict> {
     match order {
         Order::Warp(order) => warp::run(*order),
         Order::Inspect(order) => inspect::run(&order),
+        #[cfg(feature = "window")]
+        Order::Play(order) => play::run(&order),
     }
 }
 

@@ -18,6 +18,9 @@ pub enum Order {
     Warp(Box<WarpOrder>),
     /// Say what is in a file.
     Inspect(InspectOptions),
+    /// Open the sandbox window.
+    #[cfg(feature = "window")]
+    Play(PlayOptions),
 }
 
 /// `warp`: the options, and the importance among them in the order given.
@@ -34,19 +37,21 @@ pub struct WarpOrder {
 #[command(
     name = "homunculus",
     version,
-    arg_required_else_help = true,
+    arg_required_else_help = cfg!(not(feature = "window")),
     after_help = "\
 Exit codes: 0 done and certified, 2 bad input or options, 3 finished but not certified, 1 anything else."
 )]
 struct CommandLine {
     #[command(subcommand)]
-    command: Face,
+    command: Option<Face>,
 }
 
 #[derive(Debug, Subcommand)]
 enum Face {
     Warp(Box<WarpOptions>),
     Inspect(InspectOptions),
+    #[cfg(feature = "window")]
+    Play(PlayOptions),
 }
 
 /// Warp a mesh until local size is proportional to importance
@@ -155,6 +160,34 @@ pub struct InspectOptions {
     pub json: bool,
 }
 
+/// Open the sandbox window: paint importance and watch it grow
+///
+/// Without a command the window opens with the built-in homunculus.
+#[cfg(feature = "window")]
+#[derive(Debug, Args, Default)]
+#[command(after_help = "\
+Examples:
+  homunculus play body.obj
+  homunculus play head.ron
+  homunculus play gallery:hand")]
+pub struct PlayOptions {
+    /// Mesh, picture, scene (.ron) or a built-in model as gallery:NAME [default: gallery:homunculus]
+    #[arg(value_name = "FILE|SCENE.ron|gallery:NAME", value_parser = source)]
+    pub source: Option<Source>,
+    /// Measure for so many seconds each how long frames take at rest and during a solve, print it and end
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub bench: Option<f32>,
+    /// Print what --bench measured as JSON
+    #[arg(long, requires = "bench")]
+    pub json: bool,
+    /// Do what a file says, for tests
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub script: Option<PathBuf>,
+    /// Width and height of the window
+    #[arg(long, value_name = "W,H", hide = true, value_delimiter = ',', num_args = 2)]
+    pub size: Vec<u32>,
+}
+
 /// `--reference`
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ReferenceName {
@@ -189,8 +222,14 @@ impl From<ReferenceName> for Reference {
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<Order> {
     let matches = CommandLine::command().try_get_matches_from(arguments)?;
     Ok(match CommandLine::from_arg_matches(&matches)?.command {
-        Face::Inspect(options) => Order::Inspect(options),
-        Face::Warp(options) => {
+        #[cfg(feature = "window")]
+        None => Order::Play(PlayOptions::default()),
+        #[cfg(not(feature = "window"))]
+        None => return Err(CommandLine::command().error(clap::error::ErrorKind::MissingSubcommand, "a command is missing")),
+        #[cfg(feature = "window")]
+        Some(Face::Play(options)) => Order::Play(options),
+        Some(Face::Inspect(options)) => Order::Inspect(options),
+        Some(Face::Warp(options)) => {
             let layers = match matches.subcommand_matches("warp") {
                 Some(matches) => layers(&options, matches)?,
                 None => Vec::new(),
@@ -226,7 +265,7 @@ impl WarpOrder {
 }
 
 /// A scene with nothing but a source; a built-in one comes with settings that suit it.
-fn fresh(source: &Source) -> Draft {
+pub(super) fn fresh(source: &Source) -> Draft {
     let mut draft = Draft::of(source.clone());
     if let Source::Gallery(name) = source
         && let Some(entry) = gallery::list().iter().find(|entry| entry.name == name)

@@ -12,7 +12,7 @@ use crate::gallery::human::read_values;
 use crate::importance::{self, Layer, Stack};
 use crate::scene::{Scene, Source};
 use crate::schedule::{self, Outcome, Settings};
-use crate::{Error, Result, gallery};
+use crate::{Error, Result, gallery, paint};
 
 /// Warps, writes and says how it went.
 pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
@@ -25,12 +25,8 @@ pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     }
     cancel::listen();
 
-    let mut boundary = open(&scene.source)?;
-    let layers = layers(&scene, &mut boundary)?;
-    let stack = Stack::load(&layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
-    if let Some(regions) = stack.regions() {
-        boundary.regions = Some(regions.clone());
-    }
+    let (boundary, stack) = prepare(&scene, open(&scene.source)?)?;
+    let stack = paint::over(&boundary, stack, &scene.strokes)?;
     let warnings = warnings(&scene, &boundary, &stack);
     if !options.quiet {
         warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
@@ -58,6 +54,16 @@ pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     Ok(if report.certified() { Verdict::Done } else { Verdict::NotCertified })
 }
 
+/// A scene's boundary with what its layers know of it, and their importance: all but the strokes.
+pub(super) fn prepare(scene: &Scene, mut boundary: Boundary) -> Result<(Boundary, Stack)> {
+    let layers = layers(scene, &mut boundary)?;
+    let stack = Stack::load(&layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
+    if let Some(regions) = stack.regions() {
+        boundary.regions = Some(regions.clone());
+    }
+    Ok((boundary, stack))
+}
+
 /// The boundary a source names. A built-in scene brings its importance as the vertex attribute [`OWN`].
 pub(super) fn open(source: &Source) -> Result<Boundary> {
     match source {
@@ -81,9 +87,9 @@ fn with_own(mut boundary: Boundary, importance: Vec<f32>) -> Boundary {
 /// The scene's layers. A built-in scene's own importance lies below them, unless a table of its regions
 /// (`region,importance`) replaces it.
 fn layers(scene: &Scene, boundary: &mut Boundary) -> Result<Vec<Layer>> {
-    let Source::Gallery(name) = &scene.source else { return Ok(scene.layers.clone()) };
+    let Source::Gallery(name) = &scene.source else { return Ok(scene.shown_layers()) };
     let mut layers = vec![Layer::Attribute { name: OWN.into(), range: None }];
-    for layer in &scene.layers {
+    for layer in &scene.shown_layers() {
         match layer {
             Layer::Values { path } if is_table_of_regions(path)? => {
                 let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
