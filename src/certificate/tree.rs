@@ -38,6 +38,17 @@ impl Bounds {
         Self { low: self.low - margin, high: self.high + margin }
     }
 
+    /// Where a ray enters, in lengths of its direction, whose reciprocal is given; infinity where it misses.
+    #[inline]
+    fn entry(&self, origin: Vec3A, inverse: Vec3A) -> f32 {
+        let (a, b) = ((self.low - origin) * inverse, (self.high - origin) * inverse);
+        // A ray within a face of the box gives 0 · ∞; such an axis limits nothing.
+        let (near, far) = (a.min(b), a.max(b));
+        let clean = |v: Vec3A, otherwise: f32| Vec3A::select(v.is_nan_mask(), Vec3A::splat(otherwise), v);
+        let (near, far) = (clean(near, f32::NEG_INFINITY).max_element(), clean(far, f32::INFINITY).min_element());
+        if near.max(0.0) <= far { near.max(0.0) } else { f32::INFINITY }
+    }
+
     /// Whether two closed boxes meet.
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
@@ -83,6 +94,39 @@ impl Tree {
         for k in (1..self.leaves).rev() {
             self.heap[k] = self.heap[2 * k].union(self.heap[2 * k + 1]);
         }
+    }
+
+    /// The nearest primitive along a ray: `hit` says how far along it a primitive is met, if it is, in lengths of
+    /// `direction`. Returns the primitive and that distance; of two at the same distance the one met first.
+    pub fn first_along(
+        &self,
+        origin: Vec3A,
+        direction: Vec3A,
+        mut hit: impl FnMut(u32) -> Option<f32>,
+    ) -> Option<(u32, f32)> {
+        let inverse = direction.recip();
+        let mut best: Option<(u32, f32)> = None;
+        let mut stack = vec![1];
+        while let Some(node) = stack.pop() {
+            let limit = best.map_or(f32::INFINITY, |b| b.1);
+            if self.heap[node].entry(origin, inverse) > limit {
+                continue;
+            }
+            if node < self.leaves {
+                let [left, right] = [2 * node, 2 * node + 1];
+                let [a, b] = [left, right].map(|child| self.heap[child].entry(origin, inverse));
+                // The nearer one is looked into first; boxes that are missed are infinitely far.
+                let order = if a <= b { [(right, b), (left, a)] } else { [(left, a), (right, b)] };
+                stack.extend(order.into_iter().filter(|(_, entry)| *entry < limit).map(|(child, _)| child));
+                continue;
+            }
+            for &primitive in &self.order[self.leaf(node - self.leaves)] {
+                if let Some(at) = hit(primitive).filter(|at| best.is_none_or(|b| *at < b.1)) {
+                    best = Some((primitive, at));
+                }
+            }
+        }
+        best
     }
 
     /// All pairs of primitives whose boxes meet, each once, in an order that does not depend on threads.

@@ -21,7 +21,7 @@ mod off;
 mod ply;
 pub mod report;
 mod stl;
-mod table;
+pub(crate) mod table;
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write as _};

@@ -10,7 +10,7 @@ use crate::boundary::source::{NONE, Part};
 
 /// One row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct Row {
+pub(crate) struct Row {
     /// The boundary's vertex.
     pub vertex: u32,
     /// Its texture coordinate or [`NONE`].
@@ -20,7 +20,7 @@ pub(super) struct Row {
 }
 
 /// Rows, and the triangles of each part in terms of rows.
-pub(super) struct Table {
+pub(crate) struct Table {
     /// All rows; the first are the boundary's vertices.
     pub rows: Vec<Row>,
     /// Parts with at least one triangle.
@@ -28,7 +28,7 @@ pub(super) struct Table {
 }
 
 /// A part and its triangles.
-pub(super) struct Slice {
+pub(crate) struct Slice {
     /// Object and material.
     pub part: Part,
     /// Triangles, as indices of rows.

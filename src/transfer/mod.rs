@@ -203,6 +203,19 @@ impl Binding {
         })
     }
 
+    /// `[nodes of the halved lattice]` how far each is from its rest position in a state, in cells: what
+    /// [`nodes`](Self::nodes) and [`weights`](Self::weights) are summed over.
+    pub fn displacements(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
+        let mut refined = self.refinement.apply(nodes);
+        refined.par_iter_mut().zip(&self.rest_nodes).with_min_len(VERTICES_PER_TASK).for_each(|(p, rest)| *p -= *rest);
+        refined
+    }
+
+    /// The nodes of the complex that carry a node of the halved lattice: of a middle, first the two ends of its edge.
+    pub fn ends(&self, node: u32) -> [u32; 4] {
+        self.refinement.carriers(node)
+    }
+
     /// The complex's nodes that carry a vertex; some come more than once.
     pub fn carriers(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
         self.nodes[vertex as usize].iter().flat_map(|&node| self.refinement.carriers(node))

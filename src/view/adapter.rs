@@ -1,6 +1,6 @@
 //! Whether anything can be rendered, and how well.
 
-use bevy::prelude::*;
+use bevy::{prelude::*, tasks::block_on};
 
 use crate::{Error, Result};
 
@@ -22,22 +22,25 @@ pub struct Quality {
     pub samples: u32,
     /// Side of a shadow map, pixels.
     pub shadow_map: usize,
-    /// Shadow maps between near and far, ≥ 1.
-    pub cascades: usize,
     /// Pixels are computed this many times finer along each side and averaged (pictures and films only), ≥ 1.
     pub supersampling: u32,
 }
 
 impl Quality {
     /// For a software driver: about half a second a frame of 1280×720.
-    pub const SOFTWARE: Self = Self { samples: 1, shadow_map: 2048, cascades: 1, supersampling: 1 };
+    pub const SOFTWARE: Self = Self { samples: 1, shadow_map: 1024, supersampling: 1 };
 
     /// For a GPU.
-    pub const GPU: Self = Self { samples: 4, shadow_map: 4096, cascades: 2, supersampling: 1 };
+    pub const GPU: Self = Self { samples: 4, shadow_map: 2048, supersampling: 1 };
 
     /// What an adapter can do at a pleasant rate.
     pub fn for_adapter(adapter: &Adapter) -> Self {
         if adapter.is_software { Self::SOFTWARE } else { Self::GPU }
+    }
+
+    /// Samples of the shadow map for each pixel: as many as keep the penumbra free of bands for the map's texels.
+    pub(super) fn shadow_taps(&self) -> u32 {
+        if self.shadow_map > 1024 { 24 } else { 12 }
     }
 }
 
@@ -46,5 +49,24 @@ impl Quality {
 /// # Errors
 /// [`Error::Input`] with the package that brings a driver, where there is none.
 pub fn adapter() -> Result<Adapter> {
-    Err(Error::input("not yet"))
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::VULKAN,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let options = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        ..default()
+    };
+    let found = block_on(instance.request_adapter(&options)).map_err(|_| {
+        Error::input(
+            "no Vulkan driver was found, and drawing needs one: install your GPU's driver, or Mesa's software driver \
+             (Debian and Ubuntu: `apt install mesa-vulkan-drivers`); warping to files works without",
+        )
+    })?;
+    let info = found.get_info();
+    Ok(Adapter {
+        name: info.name,
+        is_software: info.device_type == wgpu::DeviceType::Cpu,
+        largest_side: found.limits().max_texture_dimension_2d,
+    })
 }

@@ -16,6 +16,8 @@ pub struct ViewFrame {
     pub scale: f64,
     /// Source position that becomes the origin.
     pub origin: DVec3,
+    /// Whether the boundary has no extent in z: it is shown as a picture, not as a body on a floor.
+    pub is_flat: bool,
 }
 
 impl ViewFrame {
@@ -25,10 +27,11 @@ impl ViewFrame {
         let longest = (high - low).max_element();
         let scale = if longest > 0.0 && longest.is_finite() { 2.0 / longest } else { 1.0 };
         let mut origin = (low + high) * 0.5;
-        if high.z > low.z {
+        let is_flat = high.z <= low.z;
+        if !is_flat {
             origin.y = low.y;
         }
-        Self { scale, origin }
+        Self { scale, origin, is_flat }
     }
 
     /// Source units to view space.

@@ -16,14 +16,23 @@
 
 mod adapter;
 mod body;
+mod canvas;
+mod colours;
+mod contact;
 mod cursor;
+mod drawn;
+mod file_materials;
 mod frame;
 mod ghost;
 pub mod headless;
 mod looks;
+mod material;
+mod normals;
 mod orbit;
 mod pick;
+mod present;
 mod size_legend;
+mod state;
 mod studio;
 
 pub use adapter::{Adapter, Quality, adapter};
@@ -37,25 +46,31 @@ pub use pick::{Hit, Picker, Target};
 pub use size_legend::SizeLegend;
 pub use studio::{Backdrop, Studio};
 
-use bevy::prelude::*;
+use bevy::{prelude::*, render::RenderApp};
 
-/// Draws bodies, in a window or into an image. Add it after Bevy's own plugins.
+/// Draws bodies, in a window or into an image. Add it after Bevy's own plugins; insert a [`Quality`] before, or the
+/// adapter's default is taken. Shaders come with the program: no file is needed beside it.
 ///
-/// Needs the asset source of its shaders: add [`ShadersPlugin`] before `DefaultPlugins`.
+/// A camera is a `Camera3d` with an [`Orbit`]; give it [`Tonemapping::None`](bevy::core_pipeline::tonemapping::Tonemapping),
+/// since the studio's shaders develop their own picture and leave the colours of legends alone.
 pub struct ViewPlugin;
 
 impl Plugin for ViewPlugin {
-    fn build(&self, _app: &mut App) {}
+    fn build(&self, app: &mut App) {
+        material::load_shaders(app);
+        app.add_plugins(MaterialPlugin::<material::SurfaceMaterial>::default()).init_resource::<Quality>();
+        present::add_systems(app);
+        studio::build(app);
+        orbit::build(app);
+        size_legend::build(app);
+        // Materials are bound to buffers made in the same frame.
+        if let Some(render) = app.get_sub_app_mut(RenderApp) {
+            material::order(render);
+        }
+    }
 }
 
-/// Ships the shaders within the program, as asset source `shaders://`. Add it **before** `DefaultPlugins`.
-pub struct ShadersPlugin;
-
-impl Plugin for ShadersPlugin {
-    fn build(&self, _app: &mut App) {}
-}
-
-/// When the view reads its components: change bodies, poses, looks and cameras before, in `Update` or `PostUpdate`.
+/// When the view reads its components: change bodies, poses, looks and cameras before, in `Update`.
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ViewSystems {
     /// In `PostUpdate`, before transforms are propagated.

@@ -1,0 +1,135 @@
+//! One state on the GPU: computed once, kept as long as the `Arc` that holds the state.
+
+use std::sync::{Arc, Weak};
+
+use bevy::{prelude::*, render::storage::ShaderBuffer};
+use glam::Vec3A;
+use rayon::prelude::*;
+
+use super::{Body, ViewFrame, contact, drawn::Rows, normals};
+
+/// Vertices per parallel task.
+const VERTICES_PER_TASK: usize = 4096;
+
+/// Buffers of one state.
+pub(super) struct State {
+    /// Whose. The memory of a weak pointer is not given to another, so its address is its name.
+    state: Weak<Vec<Vec3A>>,
+    /// Displacements and normals of the surface's rows.
+    pub surface: Sheet,
+    /// The same for the blocks, once they are shown.
+    pub blocks: Option<Sheet>,
+    /// What the body takes of the room's light from the floor.
+    pub shade: Handle<ShaderBuffer>,
+    /// Box around the surface, view space.
+    pub bounds: [Vec3; 2],
+    /// Added to y so that the body stands on the floor.
+    lift: f32,
+}
+
+/// What the shader pulls from.
+#[derive(Clone)]
+pub(super) struct Sheet {
+    pub nodes: Handle<ShaderBuffer>,
+    pub normals: Handle<ShaderBuffer>,
+}
+
+/// Where a body's surface is in one state.
+pub(super) struct Placed {
+    /// `[vertices]`, view space, lifted.
+    pub positions: Vec<Vec3A>,
+    /// What y was lifted by.
+    pub lift: f32,
+}
+
+/// `[vertices]` of a body in a state, view space, standing on the floor.
+pub(super) fn placed(body: &Body, frame: &ViewFrame, state: &[Vec3A]) -> Placed {
+    let displacements = body.binding.displacements(state);
+    let to_view = frame.world_length(body.complex.grid.cell_size);
+    let rest = &body.boundary.positions;
+    let mut positions: Vec<Vec3A> = (0..rest.len())
+        .into_par_iter()
+        .with_min_len(VERTICES_PER_TASK)
+        .map(|v| {
+            let carried = body.binding.nodes[v].iter().zip(&body.binding.weights[v]);
+            let moved: Vec3A = carried.map(|(&i, &w)| w * displacements[i as usize]).sum();
+            Vec3A::from(frame.world_from_source(rest[v])) + to_view * moved
+        })
+        .collect();
+    let lift = if frame.is_flat { 0.0 } else { -lowest(body, &positions) };
+    positions.iter_mut().for_each(|p| p.y += lift);
+    Placed { positions, lift }
+}
+
+/// The lowest y of what triangles use.
+fn lowest(body: &Body, positions: &[Vec3A]) -> f32 {
+    let lowest = body.boundary.triangles.iter().flatten().map(|&v| positions[v as usize].y).fold(f32::INFINITY, f32::min);
+    if lowest.is_finite() { lowest } else { 0.0 }
+}
+
+impl State {
+    /// Whether this is the state of an `Arc`.
+    pub fn is_of(&self, state: &Arc<Vec<Vec3A>>) -> bool {
+        std::ptr::eq(self.state.as_ptr(), Arc::as_ptr(state))
+    }
+
+    /// Whether anyone still holds the state.
+    pub fn is_alive(&self) -> bool {
+        self.state.strong_count() > 0
+    }
+
+    /// Computes what the shaders need to draw a state.
+    pub fn new(
+        body: &Body,
+        frame: &ViewFrame,
+        rows: &Rows,
+        state: &Arc<Vec<Vec3A>>,
+        buffers: &mut Assets<ShaderBuffer>,
+    ) -> Self {
+        let Placed { positions, lift } = placed(body, frame, state);
+        let used = body.boundary.triangles.iter().flatten().map(|&v| positions[v as usize]);
+        let (low, high) =
+            used.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let gradients = normals::gradients(&body.complex, state);
+        let displacements = body.binding.displacements(state);
+        let surface = Sheet {
+            nodes: buffers.add(view_displacements(body, frame, &displacements, &rows.used, lift)),
+            normals: buffers.add(ShaderBuffer::from(rows.normals_in(body, &gradients))),
+        };
+        let shade = contact::shade(&body.boundary.triangles, &positions);
+        Self {
+            state: Arc::downgrade(state),
+            surface,
+            blocks: None,
+            shade: buffers.add(ShaderBuffer::from(shade)),
+            bounds: [low.into(), high.into()],
+            lift,
+        }
+    }
+
+    /// Adds what the blocks need, if it is not there yet. `normals` is never read.
+    pub fn add_blocks(
+        &mut self,
+        body: &Body,
+        frame: &ViewFrame,
+        rows: &Rows,
+        state: &[Vec3A],
+        normals: &Handle<ShaderBuffer>,
+        buffers: &mut Assets<ShaderBuffer>,
+    ) {
+        if self.blocks.is_some() {
+            return;
+        }
+        let displacements: Vec<Vec3A> = state.iter().zip(&body.complex.rest).map(|(p, rest)| *p - *rest).collect();
+        let nodes = buffers.add(view_displacements(body, frame, &displacements, &rows.used, self.lift));
+        self.blocks = Some(Sheet { nodes, normals: normals.clone() });
+    }
+}
+
+/// `[used]` displacements in view space, lifted, padded to four numbers.
+fn view_displacements(body: &Body, frame: &ViewFrame, cells: &[Vec3A], used: &[u32], lift: f32) -> ShaderBuffer {
+    let to_view = frame.world_length(body.complex.grid.cell_size);
+    let displacement = |&node: &u32| (to_view * cells[node as usize] + lift * Vec3A::Y).extend(0.0);
+    let all: Vec<Vec4> = used.iter().map(displacement).collect();
+    ShaderBuffer::from(if all.is_empty() { vec![Vec4::ZERO] } else { all })
+}
