@@ -124,7 +124,7 @@ impl Light {
 /// The line at the bottom of the view for what went wrong, and what can be had again.
 pub(super) fn problem(ctx: &Context, facts: &Facts, middle: egui::Rect, wishes: &mut Vec<Wish>) {
     let line = |id: &str, colour: Color32, content: &mut dyn FnMut(&mut Ui)| {
-        egui::Area::new(id.into())
+        egui::Area::new(egui::Id::new(id))
             .order(egui::Order::Foreground)
             .pivot(egui::Align2::CENTER_BOTTOM)
             .fixed_pos(middle.center_bottom() - egui::vec2(0.0, 14.0))
@@ -149,7 +149,7 @@ pub(super) fn problem(ctx: &Context, facts: &Facts, middle: egui::Rect, wishes: 
     } else if facts.can_restore {
         line("restore", theme::ACCENT, &mut |ui| {
             ui.horizontal(|ui| {
-                ui.label("The last session was not closed.");
+                ui.label("There is unsaved work of the last session.");
                 if theme::primary(ui, "Restore it").clicked() {
                     wishes.push(Wish::Restore);
                 }

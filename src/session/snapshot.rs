@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use glam::Vec3A;
+use rayon::prelude::*;
 
 use crate::{
     boundary::Boundary,
     certificate::{Certificate, volume_ratios},
     schedule::{DomainSummary, Outcome},
     transfer::Binding,
-    voxel::Complex,
+    voxel::{Complex, KUHN},
 };
 
 /// What the solver is doing.
@@ -70,6 +71,8 @@ pub struct Snapshot {
     pub certificate: Option<Certificate>,
     /// Size achieved over asked, elements counted.
     pub histogram: Option<Arc<Histogram>>,
+    /// `[vertices]` size achieved over size asked, of the state the histogram counts.
+    pub reached: Option<Arc<Vec<f32>>>,
     /// Seconds per stage.
     pub seconds: Vec<(&'static str, f64)>,
     /// All that came of it, once it is done.
@@ -102,6 +105,37 @@ pub struct State {
     pub positions: Arc<Vec<Vec3A>>,
     /// What the check found.
     pub certificate: Certificate,
+}
+
+impl Lattice {
+    /// `[vertices]` size achieved over size asked for, > 0; `asked` is `[cells]`.
+    ///
+    /// Per cell the cube root of its volume, averaged over the cells around each node, then over the nodes that carry a
+    /// vertex.
+    pub fn reached(&self, asked: &[f32], positions: &[Vec3A]) -> Vec<f32> {
+        let (complex, binding) = (&*self.complex, &*self.binding);
+        let volumes = volume_ratios(complex, positions);
+        let of_cell: Vec<f32> = volumes
+            .par_chunks(KUHN.len())
+            .zip(asked)
+            .map(|(volumes, asked)| {
+                let mean = volumes.iter().sum::<f32>() / volumes.len() as f32;
+                mean.max(f32::MIN_POSITIVE).cbrt() / asked
+            })
+            .collect();
+        let mean = |values: &mut dyn Iterator<Item = f32>| {
+            let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
+            if count > 0 { sum / count as f32 } else { 1.0 }
+        };
+        let of_node: Vec<f32> = complex
+            .cells_around
+            .par_iter()
+            .map(|cells| mean(&mut cells.iter().filter(|&&c| c != u32::MAX).map(|&c| of_cell[c as usize])))
+            .collect();
+        let carried = |v: usize| binding.weights[v] != [0.0; 4];
+        let of_vertex = |v: usize| mean(&mut binding.carriers(v as u32).map(|node| of_node[node as usize]));
+        (0..binding.nodes.len()).into_par_iter().map(|v| if carried(v) { of_vertex(v) } else { 1.0 }).collect()
+    }
 }
 
 /// How many elements have which size, achieved over asked.

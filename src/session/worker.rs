@@ -297,6 +297,7 @@ impl Worker<'_> {
         if with_histogram {
             let histogram = Histogram::new(&lattice.complex, &problem.importance, warped);
             self.now.histogram = Some(Arc::new(histogram));
+            self.now.reached = Some(Arc::new(lattice.reached(&problem.importance, warped)));
         }
         self.now.warped = Some(Arc::new(warped.clone()));
         self.now.seconds = solve.run.seconds();
@@ -336,6 +337,7 @@ impl Worker<'_> {
             (&self.now.lattice, &self.now.warped, solve.run.get())
         {
             self.now.histogram = Some(Arc::new(Histogram::new(&lattice.complex, &problem.importance, warped)));
+            self.now.reached = Some(Arc::new(lattice.reached(&problem.importance, warped)));
         }
         self.now.outcome = Some(Arc::new(outcome));
         (self.now.phase, self.now.fraction, self.now.lambda) = (Phase::Done, 1.0, 1.0);

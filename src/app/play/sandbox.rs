@@ -162,7 +162,7 @@ impl Sandbox {
                 }
             }),
             Done::Written(path) => path.map(|_| ()),
-            Done::Kept(kept) => kept,
+            Done::Kept(done) | Done::Pictured(done) => done,
         };
         if let Err(error) = result {
             self.problem = Some(error.to_string());
@@ -327,6 +327,22 @@ impl Sandbox {
             Asked::ExportReport => format!("{stem}-report.json"),
             Asked::ExportFilm => format!("{stem}.mp4"),
             Asked::Open | Asked::Values | Asked::Regions | Asked::Image => String::new(),
+        }
+    }
+
+    /// Writes a picture of the window.
+    pub(super) fn write_picture(&mut self, picture: image::DynamicImage, path: PathBuf) {
+        self.tasks.start_quietly(move || Done::Pictured(super::write_picture(&picture, &path).map(drop)));
+    }
+
+    /// The program is being closed: unsaved work stays to be restored, what is saved leaves nothing behind.
+    pub(super) fn close(&self) {
+        match (&self.open, self.memory.autosave()) {
+            (Some(open), Some(path)) if open.is_changed() && !self.memory.can_restore() => {
+                // Nobody is there any more to be told.
+                let _ = keep(&open.scene(), &path);
+            }
+            _ => self.memory.close(),
         }
     }
 

@@ -23,6 +23,8 @@ pub(super) enum Done {
     Written(Result<PathBuf>),
     /// A copy for the case of a crash was written.
     Kept(Result<()>),
+    /// A picture of the window was written.
+    Pictured(Result<()>),
 }
 
 /// Tasks that run.
@@ -81,7 +83,7 @@ impl Tasks {
         for result in &done {
             match result {
                 Done::Chosen(..) => self.has_dialog = false,
-                Done::Kept(_) => self.quiet = self.quiet.saturating_sub(1),
+                Done::Kept(_) | Done::Pictured(_) => self.quiet = self.quiet.saturating_sub(1),
                 // Tasks of one kind end in the order they began, near enough for a line of text.
                 Done::Opened(_) | Done::Layers(_) | Done::Saved(_) | Done::Written(_) => {
                     if !self.running.is_empty() {

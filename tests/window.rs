@@ -1,0 +1,2 @@
+//! Contract of the window.
+#![cfg(feature = "window")]
