@@ -55,12 +55,16 @@ pub mod export;
 pub mod film;
 pub mod gallery;
 pub mod importance;
+pub mod paint;
+#[cfg(feature = "window")]
+pub mod panel;
 pub mod picture;
 #[cfg(feature = "record")]
 pub mod record;
 pub mod reference;
 pub mod scene;
 pub mod schedule;
+pub mod session;
 pub mod transfer;
 #[cfg(feature = "render")]
 pub mod view;

@@ -25,6 +25,7 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostics::human_bytes;
 use crate::export;
 use crate::importance::Layer;
+use crate::paint::Edit;
 use crate::{Error, Result};
 
 /// The version of scene files this program writes and reads.
@@ -110,6 +111,12 @@ pub struct Draft {
     /// Importance, from the bottom up.
     #[serde(default)]
     pub layers: Vec<Layer>,
+    /// Indices of layers that are left out for now.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hidden: Vec<usize>,
+    /// What was painted over the layers, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub strokes: Vec<Edit>,
     /// Cells along the longest axis, [`MIN_RESOLUTION`]`..=`[`MAX_RESOLUTION`].
     #[serde(default = "defaults::resolution")]
     pub resolution: u32,
@@ -148,6 +155,8 @@ impl Draft {
             base: defaults::base(),
             clamp: false,
             layers: Vec::new(),
+            hidden: Vec::new(),
+            strokes: Vec::new(),
             resolution: defaults::resolution(),
             fidelity: defaults::fidelity(),
             keys: defaults::keys(),
@@ -238,6 +247,12 @@ impl Scene {
         let pretty = ron::ser::PrettyConfig::new();
         let text = format().to_string_pretty(&draft, pretty).map_err(|e| Error::Fault(format!("scene to RON: {e}")))?;
         export::write_atomically(path, |file| writeln!(file, "{text}"))
+    }
+
+    /// The layers that are not left out.
+    pub fn shown_layers(&self) -> Vec<Layer> {
+        let layers = self.layers.iter().enumerate();
+        layers.filter(|(index, _)| !self.hidden.contains(index)).map(|(_, layer)| layer.clone()).collect()
     }
 
     /// Every file the scene reads.

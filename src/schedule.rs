@@ -22,9 +22,10 @@ use crate::{
     boundary::Boundary,
     certificate::{certify, distortion, fidelity},
     collision::{
-        Shell,
+        Growth, Shell,
         areas::{AreaCorrection, Areas},
-        plugin::{CollisionPlugin, CollisionProblem, Growing, Shells, Warped},
+        grow,
+        plugin::{BoundaryAtRisk, CollisionPlugin, CollisionProblem, Growing, Holds, Leap, Rotations, Shells, Sizes, Warped},
     },
     diagnostics::Stopwatch,
     edge::plugin::{EdgePlugin, LinearSolution},
@@ -44,7 +45,7 @@ use crate::{
     },
     voxel::{
         Complex, Flat,
-        plugin::{Lattice, SuspectedWelds, VoxelPlugin},
+        plugin::{Lattice, PixelShares, SuspectedWelds, VoxelPlugin},
         suspected_welds, voxelize,
     },
 };
@@ -278,9 +279,9 @@ pub struct Solved {
     /// B; of a picture the flat mesh it is drawn on.
     pub boundary: Arc<Boundary>,
     /// C and C_t.
-    pub complex: Complex,
+    pub complex: Arc<Complex>,
     /// B to C.
-    pub binding: Binding,
+    pub binding: Arc<Binding>,
     /// Surfaces that must not cross, for [`certify`]: the complex's skin first.
     pub shells: Vec<Shell>,
     /// The node states.
@@ -326,28 +327,153 @@ pub fn solve(
 /// # Errors
 /// As [`warp`].
 pub fn solve_domain(domain: Domain, observer: &dyn Observer) -> Result<Solved> {
-    let settings = &domain.settings;
-    match domain.picture {
-        None => check_resolution(settings.resolution)?,
-        Some(_) => check_flat_resolution(settings.resolution)?,
-    }
-    let mut app = solver(settings.reference);
-    let world = app.world_mut();
-    let entity = world.spawn(domain).id();
+    let mut run = Run::new(domain)?;
     loop {
-        observer.progress(&progress(world, entity));
+        observer.progress(&run.progress());
         if observer.cancelled() {
             return Err(Error::Cancelled);
         }
-        world.run_schedule(Solve);
-        if let Some(error) = world.resource_mut::<Failure>().0.take() {
-            return Err(error);
-        }
-        if world.get::<Growing>(entity).is_some_and(|g| g.0.done()) {
-            break;
+        if run.step()? {
+            return run.solved();
         }
     }
-    solved(world, entity).ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+}
+
+/// One domain on its way, an iteration at a time.
+pub struct Run {
+    app: App,
+    entity: Entity,
+}
+
+impl Run {
+    /// A domain of which nothing is known yet.
+    ///
+    /// # Errors
+    /// A resolution out of range.
+    pub fn new(domain: Domain) -> Result<Self> {
+        match domain.picture {
+            None => check_resolution(domain.settings.resolution)?,
+            Some(_) => check_flat_resolution(domain.settings.resolution)?,
+        }
+        let mut app = solver(domain.settings.reference);
+        let entity = app.world_mut().spawn(domain).id();
+        Ok(Self { app, entity })
+    }
+
+    /// Runs [`Solve`] once. Whether λ = 1 has settled.
+    ///
+    /// # Errors
+    /// What a stage refuses.
+    pub fn step(&mut self) -> Result<bool> {
+        let world = self.app.world_mut();
+        world.run_schedule(Solve);
+        match world.resource_mut::<Failure>().0.take() {
+            Some(error) => Err(error),
+            None => Ok(world.get::<Growing>(self.entity).is_some_and(|g| g.0.done())),
+        }
+    }
+
+    /// Where it is; the stage named is the one about to run.
+    pub fn progress(&self) -> Progress {
+        progress(self.app.world(), self.entity)
+    }
+
+    /// A component of the domain.
+    pub fn get<C: Component>(&self) -> Option<&C> {
+        self.app.world().get(self.entity)
+    }
+
+    /// Gives the domain components: what is there already no stage computes.
+    pub fn insert(&mut self, components: impl Bundle) {
+        self.app.world_mut().entity_mut(self.entity).insert(components);
+    }
+
+    /// Seconds per stage so far.
+    pub fn seconds(&self) -> Vec<(&'static str, f64)> {
+        self.app.world().resource::<Stopwatch>().seconds()
+    }
+
+    /// Takes another importance, with its linear solution, and other settings but for the resolution, and grows from rest
+    /// again. What hangs on the lattice alone stays.
+    pub fn restart(&mut self, domain: Domain, importance: Importance, linear: LinearSolution) {
+        let mut entity = self.app.world_mut().entity_mut(self.entity);
+        if let (Some(Lattice(complex)), Some(CollisionProblem(problem))) =
+            (entity.get::<Lattice>(), entity.get::<CollisionProblem>())
+        {
+            let (complex, mut problem) = (complex.clone(), problem.clone());
+            problem.importance.clone_from(&importance.cells);
+            problem.fidelity = domain.settings.fidelity;
+            problem.from = None;
+            let growth = Growth::of(complex.dimension, domain.settings.keys, &problem.importance);
+            entity.insert((CollisionProblem(problem), Growing(growth), Warped(complex.rest.clone())));
+            let fresh = (Rotations::default(), Holds::default(), BoundaryAtRisk::default(), Leap::default());
+            entity.insert(fresh).remove::<Reel>();
+        }
+        entity.insert((domain, importance, linear));
+        *self.app.world_mut().resource_mut::<Stopwatch>() = Stopwatch::default();
+    }
+
+    /// The same without going back to rest: the present state, which is valid, is the first guess, and the sizes asked for
+    /// go from what they are to what they will be. The film then begins at the present state. False, and nothing changes,
+    /// where there is no state that could be gone on from.
+    pub fn go_on(&mut self, domain: Domain, importance: Importance, linear: LinearSolution) -> bool {
+        let mut entity = self.app.world_mut().entity_mut(self.entity);
+        let Some(shells) = entity.get_mut::<Shells>().map(|mut shells| std::mem::take(&mut shells.0)) else {
+            return false;
+        };
+        let start = (|| {
+            let (Lattice(complex), CollisionProblem(problem)) = (entity.get()?, entity.get()?);
+            let (Warped(warped), Sizes(sizes), Reel(film)) = (entity.get()?, entity.get()?, entity.get()?);
+            let certificate = certify(complex, &shells, warped);
+            if certificate.certified() {
+                return Some((warped.clone(), certificate, sizes.size.clone()));
+            }
+            let last = film.keyframes().last().filter(|last| last.certificate.certified())?;
+            let size = grow(complex, problem, last.lambda).size;
+            Some((last.positions.clone(), last.certificate.clone(), size))
+        })();
+        let parts = entity.get::<Lattice>().zip(entity.get::<CollisionProblem>());
+        let parts = parts.map(|(lattice, problem)| (lattice.0.clone(), problem.0.clone()));
+        let ready = start.zip(parts).filter(|((_, _, size), (complex, _))| size.len() == complex.cells.len());
+        entity.insert(Shells(shells));
+        let Some(((positions, certificate, size), (_, mut problem))) = ready else { return false };
+        problem.importance.clone_from(&importance.cells);
+        problem.fidelity = domain.settings.fidelity;
+        let change = size.iter().zip(&problem.importance).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f32::max);
+        problem.from = Some(size);
+        let mut film = Film::default();
+        film.push(Keyframe { lambda: 0.0, positions: positions.clone(), certificate, way_is_clear: true });
+        let growth = (Growing(Growth::change(change)), Leap::default());
+        entity.insert((CollisionProblem(problem), growth, Warped(positions), Reel(film)));
+        entity.insert((domain, importance, linear));
+        true
+    }
+
+    /// What came of it, once a [`step`](Self::step) has said that all is done. The film is mended.
+    ///
+    /// # Errors
+    /// A fault, if it is not done.
+    pub fn outcome(&mut self) -> Result<Outcome> {
+        outcome(self.app.world_mut(), self.entity)
+            .ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+    }
+
+    /// The same with the states of the nodes.
+    ///
+    /// # Errors
+    /// As [`outcome`](Self::outcome).
+    pub fn solved(mut self) -> Result<Solved> {
+        let outcome = self.outcome()?;
+        let mut domain = self.app.world_mut().entity_mut(self.entity);
+        let parts = (|| {
+            let boundary = domain.get::<Domain>()?.boundary.clone();
+            let (Lattice(complex), Bound(binding)) = (domain.take()?, domain.take()?);
+            let (Shells(shells), Reel(film)) = (domain.take()?, domain.take()?);
+            let (LinearSolution(linear), Importance { nodes: importance, .. }) = (domain.take()?, domain.take()?);
+            Some(Solved { boundary, complex, binding, shells, film, linear, importance, outcome })
+        })();
+        parts.ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+    }
 }
 
 /// Where a domain is; the stage named is the one about to run.
@@ -374,24 +500,40 @@ fn progress(world: &World, entity: Entity) -> Progress {
     Progress { stage, lambda, size_error_p95, fraction: growth.fraction() }
 }
 
-fn solved(world: &mut World, entity: Entity) -> Option<Solved> {
-    let mut watch = world.remove_resource::<Stopwatch>()?;
+fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
+    let mut watch = std::mem::take(&mut *world.resource_mut::<Stopwatch>());
     let mut shells = std::mem::take(&mut world.get_mut::<Shells>(entity)?.0);
     let mut film = std::mem::take(&mut world.get_mut::<Reel>(entity)?.0);
+    let outcome = assemble(world, entity, &mut watch, &mut shells, &mut film);
+    // A flat surface may follow the nodes otherwise than at first.
+    if world.get::<PixelShares>(entity).is_some()
+        && let Some(binding) = shells.iter().find_map(Shell::binding).cloned()
+    {
+        world.entity_mut(entity).insert(Bound(Arc::new(binding)));
+    }
+    // Given back: a change of importance goes on with them.
+    world.entity_mut(entity).insert((Shells(shells), Reel(film)));
+    world.insert_resource(watch);
+    outcome
+}
+
+fn assemble(
+    world: &World,
+    entity: Entity,
+    watch: &mut Stopwatch,
+    shells: &mut [Shell],
+    film: &mut Film,
+) -> Option<Outcome> {
     let get = world.get_entity(entity).ok()?;
     let (domain, Lattice(complex), Bound(binding)) = (get.get::<Domain>()?, get.get::<Lattice>()?, get.get::<Bound>()?);
     let CollisionProblem(problem) = get.get::<CollisionProblem>()?;
     let (importance, linear) = (get.get::<Importance>()?, get.get::<LinearSolution>()?);
 
     let classic = watch.time("classic", || certify(complex, &shells[..1], &linear.0));
-    let mut binding = binding.clone();
     if domain.settings.reference.is_none() {
-        watch.time("certificate", || film.mend(complex, &mut shells, &problem.importance));
+        watch.time("certificate", || film.mend(complex, shells, &problem.importance));
     }
-    // A flat surface may follow the nodes otherwise than at first.
-    if let Some(straightened) = shells.iter().find_map(Shell::binding).filter(|_| domain.picture.is_some()) {
-        binding = straightened.clone();
-    }
+    let binding = shells.iter().find_map(Shell::binding).unwrap_or(binding);
     let frames: Vec<Frame> = watch.time("transfer", || {
         let frame = |k: &Keyframe| Frame {
             lambda: k.lambda,
@@ -421,7 +563,7 @@ fn solved(world: &mut World, entity: Entity) -> Option<Solved> {
     };
     let boundary = &domain.boundary;
     let (self_intersections, welds) = (get.get::<SelfIntersections>()?.0, get.get::<SuspectedWelds>()?.0);
-    let outcome = Outcome {
+    Some(Outcome {
         input: input_summary(boundary, self_intersections),
         domain: domain_summary(complex, domain.settings.resolution, welds),
         classic: Some(Counts { inverted: classic.inverted(), crossings: classic.crossings() }),
@@ -434,12 +576,7 @@ fn solved(world: &mut World, entity: Entity) -> Option<Solved> {
             Some(_) => binding.of_nodes(&importance.nodes),
             None => domain.importance.at_vertices(boundary),
         },
-    };
-    let boundary = domain.boundary.clone();
-    let mut domain = world.entity_mut(entity);
-    let Lattice(complex) = domain.take()?;
-    let (LinearSolution(linear), Importance { nodes: importance, .. }) = (domain.take()?, domain.take()?);
-    Some(Solved { boundary, complex, binding, shells, film, linear, importance, outcome })
+    })
 }
 
 /// Regions of a picture, whose borders run through cells.
@@ -470,7 +607,8 @@ fn input_summary(boundary: &Boundary, self_intersections: usize) -> InputSummary
     }
 }
 
-fn domain_summary(complex: &Complex, resolution: u32, suspected_welds: usize) -> DomainSummary {
+/// A complex in numbers.
+pub(crate) fn domain_summary(complex: &Complex, resolution: u32, suspected_welds: usize) -> DomainSummary {
     DomainSummary {
         resolution,
         cell_size: complex.grid.cell_size,

@@ -22,6 +22,8 @@ fn full(folder: &Path) -> Draft {
             Layer::Regions { regions: folder.join("r.csv"), values: folder.join("w.csv"), per_area: false },
             Layer::Image { path: folder.join("map.png"), range: None },
         ],
+        hidden: Vec::new(),
+        strokes: Vec::new(),
         resolution: 96,
         fidelity: 0.9,
         keys: 12,

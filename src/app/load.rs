@@ -13,7 +13,7 @@ use crate::picture::{self, Cut, Picture};
 use crate::scene::{Scene, Source};
 use crate::schedule::Settings;
 use crate::voxel::Flat;
-use crate::{Error, Result, gallery};
+use crate::{Error, Result, gallery, paint};
 
 /// What the engine takes.
 pub(super) struct Loaded {
@@ -27,15 +27,21 @@ pub(super) struct Loaded {
 /// Reads what a scene names. From here on Ctrl-C asks rather than kills, and as many threads work as were asked for.
 pub(super) fn load(scene: &Scene, options: &SceneOptions) -> Result<Loaded> {
     begin(options)?;
-    let mut boundary = open(&scene.source)?;
+    let (boundary, stack) = prepare(scene, open(&scene.source)?)?;
+    let stack = paint::over(&boundary, stack, &scene.strokes)?;
+    let warnings = warnings(scene, &boundary, &stack);
+    tell(&warnings, options);
+    Ok(Loaded { boundary, stack, settings: settings(scene, options), warnings })
+}
+
+/// A scene's boundary with what its layers know of it, and their importance: all but the strokes.
+pub(super) fn prepare(scene: &Scene, mut boundary: Boundary) -> Result<(Boundary, Stack)> {
     let layers = layers(scene, &mut boundary)?;
     let stack = Stack::load(&layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
     if let Some(regions) = stack.regions() {
         boundary.regions = Some(regions.clone());
     }
-    let warnings = warnings(scene, &boundary, &stack);
-    tell(&warnings, options);
-    Ok(Loaded { boundary, stack, settings: settings(scene, options), warnings })
+    Ok((boundary, stack))
 }
 
 /// A picture and what is asked of it.
@@ -75,7 +81,7 @@ pub(super) fn load_picture(scene: &Scene, options: &SceneOptions, bytes: &[u8]) 
     let background = background.map_err(|sentence: String| Error::input(format!("--background: {sentence}")))?;
     let name = scene.source.to_string();
     let picture = picture::read_bytes(&name, bytes, &Cut { background, ..Cut::default() })?;
-    let layers = scene.layers.iter().map(picture_layer).collect::<Result<Vec<_>>>()?;
+    let layers = scene.shown_layers().iter().map(picture_layer).collect::<Result<Vec<_>>>()?;
     let field = Field::load(&layers, scene.base, scene.clamp, &picture, Path::new(""))?;
     let mut warnings = picture.warnings.clone();
     warnings.extend_from_slice(&field.warnings);
@@ -152,9 +158,9 @@ fn with_own(mut boundary: Boundary, importance: Vec<f32>) -> Boundary {
 /// The scene's layers. A built-in scene's own importance lies below them, unless a table of its regions
 /// (`region,importance`) replaces it.
 fn layers(scene: &Scene, boundary: &mut Boundary) -> Result<Vec<Layer>> {
-    let Source::Gallery(name) = &scene.source else { return Ok(scene.layers.clone()) };
+    let Source::Gallery(name) = &scene.source else { return Ok(scene.shown_layers()) };
     let mut layers = vec![Layer::Attribute { name: OWN.into(), range: None }];
-    for layer in &scene.layers {
+    for layer in &scene.shown_layers() {
         match layer {
             Layer::Values { path } if is_table_of_regions(path)? => {
                 let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;

@@ -15,6 +15,8 @@ mod inspect;
 mod load;
 pub mod options;
 mod outputs;
+#[cfg(feature = "window")]
+pub mod play;
 mod progress;
 #[cfg(feature = "record")]
 pub mod record;
@@ -68,6 +70,8 @@ fn run(order: Order) -> Result<Verdict> {
         Order::Inspect(order) => inspect::run(&order),
         #[cfg(feature = "record")]
         Order::Record(order) => record::run(*order),
+        #[cfg(feature = "window")]
+        Order::Play(order) => play::run(&order),
     }
 }
 

@@ -23,6 +23,9 @@ pub enum Order {
     /// Film the growth.
     #[cfg(feature = "record")]
     Record(Box<RecordOrder>),
+    /// Open the sandbox window.
+    #[cfg(feature = "window")]
+    Play(PlayOptions),
 }
 
 /// `warp`: the options, and the importance among them in the order given.
@@ -39,13 +42,13 @@ pub struct WarpOrder {
 #[command(
     name = "homunculus",
     version,
-    arg_required_else_help = true,
+    arg_required_else_help = cfg!(not(feature = "window")),
     after_help = "\
 Exit codes: 0 done and certified, 2 bad input or options, 3 finished but not certified, 1 anything else."
 )]
 struct CommandLine {
     #[command(subcommand)]
-    command: Face,
+    command: Option<Face>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -54,6 +57,8 @@ enum Face {
     Inspect(InspectOptions),
     #[cfg(feature = "record")]
     Record(Box<RecordOptions>),
+    #[cfg(feature = "window")]
+    Play(PlayOptions),
 }
 
 /// Warp a mesh until local size is proportional to importance
@@ -117,6 +122,34 @@ pub struct InspectOptions {
     pub json: bool,
 }
 
+/// Open the sandbox window: paint importance and watch it grow
+///
+/// Without a command the window opens with the built-in homunculus.
+#[cfg(feature = "window")]
+#[derive(Debug, Args, Default)]
+#[command(after_help = "\
+Examples:
+  homunculus play body.obj
+  homunculus play head.ron
+  homunculus play gallery:hand")]
+pub struct PlayOptions {
+    /// Mesh, picture, scene (.ron) or a built-in model as gallery:NAME [default: gallery:homunculus]
+    #[arg(value_name = "FILE|SCENE.ron|gallery:NAME", value_parser = source)]
+    pub source: Option<Source>,
+    /// Measure for so many seconds each how long frames take at rest and during a solve, print it and end
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub bench: Option<f32>,
+    /// Print what --bench measured as JSON
+    #[arg(long, requires = "bench")]
+    pub json: bool,
+    /// Do what a file says, for tests
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub script: Option<PathBuf>,
+    /// Width and height of the window
+    #[arg(long, value_name = "W,H", hide = true, value_delimiter = ',', num_args = 2)]
+    pub size: Vec<u32>,
+}
+
 /// `--colour`
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Colour {
@@ -143,13 +176,19 @@ impl WarpOrder {
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<Order> {
     let matches = CommandLine::command().try_get_matches_from(arguments)?;
     Ok(match CommandLine::from_arg_matches(&matches)?.command {
-        Face::Inspect(options) => Order::Inspect(options),
-        Face::Warp(options) => {
+        #[cfg(feature = "window")]
+        None => Order::Play(PlayOptions::default()),
+        #[cfg(not(feature = "window"))]
+        None => return Err(CommandLine::command().error(clap::error::ErrorKind::MissingSubcommand, "a command is missing")),
+        #[cfg(feature = "window")]
+        Some(Face::Play(options)) => Order::Play(options),
+        Some(Face::Inspect(options)) => Order::Inspect(options),
+        Some(Face::Warp(options)) => {
             let layers = layers_of(&options.scene, &matches)?;
             Order::Warp(Box::new(WarpOrder { options: *options, layers }))
         }
         #[cfg(feature = "record")]
-        Face::Record(options) => {
+        Some(Face::Record(options)) => {
             let layers = layers_of(&options.scene, &matches)?;
             Order::Record(Box::new(RecordOrder { options: *options, layers }))
         }

@@ -129,7 +129,7 @@ impl SceneOptions {
 const PICTURE_RESOLUTION: u32 = 128;
 
 /// A scene with nothing but a source; a built-in one comes with settings that suit it.
-fn fresh(source: &Source) -> Draft {
+pub(super) fn fresh(source: &Source) -> Draft {
     let mut draft = Draft::of(source.clone());
     if source.is_picture() {
         draft.resolution = PICTURE_RESOLUTION;

@@ -4,6 +4,8 @@
 //! a few iterations follow that nobody guards, and the certificate of the whole way decides. Where that is refused, the
 //! same stretch is walked in small guarded steps.
 
+use crate::voxel::Dimension;
+
 /// λ grows by at most this many steps' worth of relative size change: `ln` of the largest factor per step. Above about
 /// 0.2 steps fold cells that the guard must then hold; smaller only costs time.
 const LN_SIZE_PER_STEP: f32 = 0.12;
@@ -132,6 +134,35 @@ impl Growth {
     /// Notes that something was held back: the next stretch is walked as well.
     pub fn held_back(&mut self) {
         self.free = false;
+    }
+
+    /// Plans the growth to `[cells]` sizes. In the plane it walks: large parts flow far, and the correction of areas wants a
+    /// settled state.
+    pub fn of(dimension: Dimension, keys: usize, importance: &[f32]) -> Self {
+        let (low, high) = importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
+        let mut growth = Self::plan(keys, low, high);
+        if dimension == Dimension::Two {
+            growth.walk();
+        }
+        growth
+    }
+
+    /// Plans the way between two sizes that differ by at most `ln_change` in the logarithm: one keyframe, at its end.
+    pub fn change(ln_change: f32) -> Self {
+        let count = (ln_change / LN_SIZE_PER_STEP).ceil().max(1.0) as usize;
+        let steps = (1..=count).map(|k| k as f32 / count as f32).collect();
+        Self {
+            steps,
+            keys: 1,
+            step: 0,
+            iteration: 0,
+            motion: f32::INFINITY,
+            patience: SETTLING_ITERATIONS,
+            range: [1.0, 1.0],
+            stretch: 0,
+            leaps: false,
+            free: false,
+        }
     }
 
     /// λ now.

@@ -55,6 +55,8 @@ pub struct Problem {
     pub importance: Vec<f32>,
     /// μ in 0..=1.
     pub fidelity: f32,
+    /// `[cells]` size factor at λ = 0; `None` for 1, the rest shape.
+    pub from: Option<Vec<f32>>,
     operator: Multigrid,
     boundary_nodes: Vec<u32>,
 }
@@ -70,6 +72,7 @@ impl Problem {
         Self {
             importance,
             fidelity,
+            from: None,
             operator: Multigrid::new(complex, Weights::Cells),
             boundary_nodes: (0..complex.nodes() as u32).filter(|&i| complex.on_boundary[i as usize]).collect(),
         }
@@ -84,7 +87,7 @@ impl Problem {
 /// What is asked for at one λ.
 #[derive(Debug, Clone, Default)]
 pub struct Asked {
-    /// `[cells]` s_c = 1 + λ (f_c − 1).
+    /// `[cells]` s_c = 1 + λ (f_c − 1); from other sizes than rest f_c^λ · from_c^(1 − λ).
     pub size: Vec<f32>,
     /// `[nodes]` r_i, the least target length of the edges at i.
     pub radius: Vec<f32>,
@@ -92,7 +95,10 @@ pub struct Asked {
 
 /// Grow: the sizes and radii asked for at λ.
 pub fn grow(complex: &Complex, problem: &Problem, lambda: f32) -> Asked {
-    let size: Vec<f32> = problem.importance.iter().map(|f| 1.0 + lambda * (f - 1.0)).collect();
+    let size: Vec<f32> = match &problem.from {
+        None => problem.importance.iter().map(|f| 1.0 + lambda * (f - 1.0)).collect(),
+        Some(from) => from.iter().zip(&problem.importance).map(|(a, b)| a * (b / a).powf(lambda)).collect(),
+    };
     let radius = complex
         .cells_around
         .par_iter()

@@ -112,10 +112,10 @@ fn start(
         }
         let problem =
             watch.time("grow", || Problem::of_cells(complex, importance.cells.clone(), domain.settings.fidelity));
-        let (low, high) = problem.importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
+        let growth = Growth::of(complex.dimension, domain.settings.keys, &problem.importance);
         commands.entity(entity).insert((
             CollisionProblem(problem),
-            Growing(plan(complex.dimension, domain.settings.keys, low, high)),
+            Growing(growth),
             Warped(complex.rest.clone()),
             Shells(vec![Shell::skin(complex)]),
             (Sizes::default(), Rotations::default(), Targets::default(), Touching::default(), Proposed::default()),
@@ -153,15 +153,6 @@ fn correct_areas(mut domains: Query<Corrected>, mut watch: ResMut<Stopwatch>) {
             growing.0.again();
         }
     }
-}
-
-/// In the plane growth walks: large parts flow far, and the correction of areas wants a settled state.
-fn plan(dimension: Dimension, keys: usize, low: f32, high: f32) -> Growth {
-    let mut growth = Growth::plan(keys, low, high);
-    if dimension == Dimension::Two {
-        growth.walk();
-    }
-    growth
 }
 
 fn grow_sizes(mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &mut Sizes)>, mut watch: ResMut<Stopwatch>) {

@@ -37,7 +37,7 @@ use sphere::Sphere;
 pub use colour::colours;
 pub use layer::{CLAMP_MAX, CLAMP_MIN, IMAGE_RANGE, Layer, Range};
 pub use sphere::falloff;
-pub use spread::{Sampling, cell_importance, node_importance};
+pub use spread::{Sampling, Spread, cell_importance, node_importance};
 
 /// A point on the boundary's surface where importance is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +65,8 @@ enum Ready {
     Sphere(Sphere),
     /// `[vertices]` ln f, `None` where what is below stays.
     Vertices(Vec<Option<f64>>),
+    /// `[vertices]` what is added to ln f by hand.
+    Painted(Vec<f64>),
     Picture {
         picture: Picture,
         /// `[triangles]`
@@ -133,6 +135,13 @@ impl Stack {
             self.at(boundary, &Place::of_vertex(boundary, vertex, *corner))
         };
         corner_of.par_iter().enumerate().map(at).collect()
+    }
+
+    /// The same with `[vertices]` painted differences of ln f over all layers.
+    #[must_use]
+    pub fn painted(mut self, differences: Vec<f64>) -> Self {
+        self.layers.push(Ready::Painted(differences));
+        self
     }
 
     /// The regions named by the last `Regions` layer.
@@ -255,6 +264,11 @@ impl Stack {
                     |(vertex, weight): &(usize, f64)| weight * values.get(*vertex).copied().flatten().unwrap_or(below);
                 let total: f64 = place.corners.iter().map(|(_, weight)| weight).sum();
                 if total > 0.0 { place.corners.iter().map(corner).sum::<f64>() / total } else { below }
+            }
+            Ready::Painted(differences) => {
+                let corner = |(vertex, weight): &(usize, f64)| weight * differences.get(*vertex).copied().unwrap_or(0.0);
+                let total: f64 = place.corners.iter().map(|(_, weight)| weight).sum();
+                if total > 0.0 { below + place.corners.iter().map(corner).sum::<f64>() / total } else { below }
             }
             Ready::Picture { picture, corner_uvs, range } => {
                 let Some(uv) = place.uv(boundary, corner_uvs) else { return below };

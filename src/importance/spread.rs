@@ -92,29 +92,7 @@ impl Sampling {
 
     /// `[nodes]` importance from `[samples]` importance.
     pub fn spread(&self, complex: &Complex, importance: &[f32]) -> Vec<f32> {
-        let mut pull = vec![0.0_f64; complex.nodes()];
-        let mut towards = vec![0.0_f64; complex.nodes()];
-        for (k, &f) in importance.iter().enumerate() {
-            let ln = f64::from(f).ln();
-            for (&i, &w) in self.nodes[k].iter().zip(&self.weights[k]) {
-                pull[i as usize] += f64::from(w);
-                towards[i as usize] += f64::from(w) * ln;
-            }
-        }
-        // The mean of a node's samples, pulling with at most PULL: many samples do not outweigh few.
-        let mass: Vec<f32> = pull.iter().map(|&p| PULL * p.min(1.0) as f32).collect();
-        let wanted: Vec<f32> =
-            pull.iter().zip(&towards).map(|(&p, &t)| if p > 0.0 { (t / p) as f32 } else { 0.0 }).collect();
-        if wanted.iter().zip(&mass).all(|(&u, &m)| m == 0.0 || u == 0.0) {
-            return vec![1.0; complex.nodes()];
-        }
-        let mut rhs: Vec<Vec3A> = wanted.iter().zip(&mass).map(|(&u, &m)| Vec3A::new(m * u, 0.0, 0.0)).collect();
-        let operator = Multigrid::with_mass(complex, Weights::Unit, mass);
-        let mut u = vec![Vec3A::ZERO; complex.nodes()];
-        let goal = 1.0e-4 * (complex.nodes() as f64).sqrt();
-        conjugate_gradients(&operator, &mut rhs, &mut u, goal, 60);
-        let (low, high) = importance.iter().fold((f32::INFINITY, 0.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
-        u.iter().map(|u| u.x.exp().clamp(low, high)).collect()
+        Spread::new(self, complex).solve(self, importance)
     }
 
     /// `[cells]` region of each cell: that of its first sample, spread from cell to cell; `u32::MAX` for none at all.
@@ -148,5 +126,59 @@ impl Sampling {
             front = next;
         }
         of_cell
+    }
+}
+
+/// What spreading needs that does not depend on importance, and the last result to start from.
+#[derive(Debug, Clone)]
+pub struct Spread {
+    /// `[nodes]` how strongly samples pull together.
+    pull: Vec<f64>,
+    /// `[nodes]` the same, at most [`PULL`].
+    mass: Vec<f32>,
+    operator: Multigrid,
+    /// `[nodes]` ln f in the first coordinate.
+    u: Vec<Vec3A>,
+}
+
+impl Spread {
+    /// Prepares for the samples of a complex.
+    pub fn new(sampling: &Sampling, complex: &Complex) -> Self {
+        let mut pull = vec![0.0_f64; complex.nodes()];
+        for (nodes, weights) in sampling.nodes.iter().zip(&sampling.weights) {
+            for (&i, &w) in nodes.iter().zip(weights) {
+                pull[i as usize] += f64::from(w);
+            }
+        }
+        // The mean of a node's samples, pulling with at most PULL: many samples do not outweigh few.
+        let mass: Vec<f32> = pull.iter().map(|&p| PULL * p.min(1.0) as f32).collect();
+        let operator = Multigrid::with_mass(complex, Weights::Unit, mass.clone());
+        Self { pull, mass, operator, u: vec![Vec3A::ZERO; complex.nodes()] }
+    }
+
+    /// `[nodes]` importance from `[samples]` importance, starting from the last result.
+    pub fn solve(&mut self, sampling: &Sampling, importance: &[f32]) -> Vec<f32> {
+        let mut towards = vec![0.0_f64; self.pull.len()];
+        for (k, &f) in importance.iter().enumerate() {
+            let ln = f64::from(f).ln();
+            for (&i, &w) in sampling.nodes[k].iter().zip(&sampling.weights[k]) {
+                towards[i as usize] += f64::from(w) * ln;
+            }
+        }
+        let wanted: Vec<f32> =
+            self.pull.iter().zip(&towards).map(|(&p, &t)| if p > 0.0 { (t / p) as f32 } else { 0.0 }).collect();
+        if wanted.iter().zip(&self.mass).all(|(&u, &m)| m == 0.0 || u == 0.0) {
+            self.u.fill(Vec3A::ZERO);
+            return vec![1.0; self.pull.len()];
+        }
+        let mut residual = Vec::new();
+        self.operator.apply(&self.u, &mut residual);
+        for (r, (&u, &m)) in residual.iter_mut().zip(wanted.iter().zip(&self.mass)) {
+            *r = Vec3A::new(m * u, 0.0, 0.0) - *r;
+        }
+        let goal = 1.0e-4 * (self.pull.len() as f64).sqrt();
+        conjugate_gradients(&self.operator, &mut residual, &mut self.u, goal, 60);
+        let (low, high) = importance.iter().fold((f32::INFINITY, 0.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
+        self.u.iter().map(|u| u.x.exp().clamp(low, high)).collect()
     }
 }

@@ -1,5 +1,7 @@
 //! Transfer: binds the boundary once, as soon as there is a lattice to bind it to.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 
 use super::Binding;
@@ -13,7 +15,7 @@ use crate::{
 
 /// Barycentric coordinates of a domain's boundary.
 #[derive(Component, Debug)]
-pub struct Bound(pub Binding);
+pub struct Bound(pub Arc<Binding>);
 
 /// Pairs of the input's triangles that crossed at rest.
 #[derive(Component, Debug)]
@@ -41,7 +43,7 @@ fn bind_new(
             return;
         }
         let shell = watch.time("input", || Shell::boundary(&domain.boundary, binding.clone(), complex));
-        commands.entity(entity).insert((Bound(binding), SelfIntersections(shell.inherited())));
+        commands.entity(entity).insert((Bound(Arc::new(binding)), SelfIntersections(shell.inherited())));
         shells.0.push(shell);
     }
 }

@@ -241,7 +241,7 @@ impl Canvas {
         }
         let mapped = looks.mapped();
         if let Some((_, _, map)) = mapped {
-            let entries: Vec<Vec4> = map.iter().map(LinearRgba::to_vec4).collect();
+            let entries: Vec<Vec4> = map.iter().map(|colour| colour.to_vec4()).collect();
             debug_assert_eq!(entries.len(), ENTRIES);
             self.colour_map = easel.buffers.add(ShaderBuffer::from(entries));
         }

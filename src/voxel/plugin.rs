@@ -1,5 +1,7 @@
 //! Voxelize: gives a domain its lattice.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 
 use super::{Complex, Shares, suspected_welds, voxelize};
@@ -12,7 +14,7 @@ use crate::{
 
 /// C and C_t of a domain.
 #[derive(Component, Debug)]
-pub struct Lattice(pub Complex);
+pub struct Lattice(pub Arc<Complex>);
 
 /// Cells of a domain that may glue two sheets of its surface.
 #[derive(Component, Debug)]
@@ -41,7 +43,7 @@ fn voxelize_new(
         match voxelize_domain(&mut domain, &mut watch) {
             Ok((complex, shares, welds)) => {
                 let mut entity = commands.entity(entity);
-                entity.insert((Lattice(complex), SuspectedWelds(welds)));
+                entity.insert((Lattice(Arc::new(complex)), SuspectedWelds(welds)));
                 if let Some(shares) = shares {
                     entity.insert(PixelShares(shares));
                 }

@@ -1,0 +1,261 @@
+//! From the sandbox to the view's components: bodies, poses, colours, the camera.
+
+use std::sync::Arc;
+
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::prelude::*;
+use glam::Vec3A;
+
+use super::pointer::Viewport;
+use super::sandbox::{Look, Sandbox};
+use crate::panel::Compare;
+use crate::session::{Phase, Snapshot};
+use crate::view::{Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe};
+
+/// The certified body.
+#[derive(Component)]
+pub struct Shown;
+
+/// What Eq. 1 alone makes of it.
+#[derive(Component)]
+pub struct Classic;
+
+/// `[nodes]` V of the lattice that is shown.
+#[derive(Component)]
+pub(super) struct Rest(Arc<Vec<Vec3A>>);
+
+pub(super) fn spawn_camera(mut commands: Commands, quality: Option<Res<Quality>>) {
+    let samples = quality.map_or(1, |quality| quality.samples);
+    commands.spawn((Camera3d::default(), Tonemapping::None, Msaa::from_samples(samples), Orbit::default()));
+}
+
+/// A body for the lattice that is there; a second one where it is compared with.
+pub(super) fn bodies(
+    mut commands: Commands,
+    sandbox: Res<Sandbox>,
+    shown: Query<(Entity, &Body), With<Shown>>,
+    classic: Query<Entity, With<Classic>>,
+    references: Query<Entity, With<SizeLegend>>,
+    orbits: Query<&Orbit>,
+) {
+    let Some(lattice) = &sandbox.snapshot.lattice else { return };
+    let is_new = !shown.iter().any(|(_, body)| Arc::ptr_eq(&body.complex, &lattice.complex));
+    let body = || Body {
+        boundary: lattice.boundary.clone(),
+        complex: lattice.complex.clone(),
+        binding: lattice.binding.clone(),
+    };
+    if is_new {
+        shown.iter().for_each(|(entity, _)| commands.entity(entity).despawn());
+        let rest = Arc::new(lattice.complex.rest.clone());
+        commands.spawn((Shown, body(), Picker::default(), Rest(rest)));
+    }
+    let compares = sandbox.choice.compare != Compare::Off;
+    if is_new || !compares {
+        classic.iter().for_each(|entity| commands.entity(entity).despawn());
+    }
+    if compares && (is_new || classic.is_empty()) {
+        let rest = Arc::new(lattice.complex.rest.clone());
+        commands.spawn((Classic, body(), Rest(rest)));
+    }
+    let shows_sizes = sandbox.choice.size_legend && !orbits.is_empty();
+    if !shows_sizes || is_new {
+        references.iter().for_each(|entity| commands.entity(entity).despawn());
+    }
+    if shows_sizes && (is_new || references.is_empty()) {
+        let (low, high) = lattice.boundary.bounds().unwrap_or_default();
+        let frame = ViewFrame::of(&lattice.boundary);
+        let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
+        // Before the feet, so that they hide nothing.
+        let at = Vec3::new(0.0, 0.0, high.z + 0.25 * (high.x - low.x).max(0.4));
+        commands.spawn(SizeLegend { unit: 0.08, is_flat: high.z <= low.z, at });
+    }
+}
+
+type Posed<'a> = (Entity, Option<&'a Pose>, &'a Rest, &'a mut Placement);
+
+/// Which state is shown at which λ.
+pub(super) fn poses(
+    mut commands: Commands,
+    sandbox: Res<Sandbox>,
+    mut shown: Query<Posed, (With<Shown>, Without<Classic>)>,
+    mut classic: Query<Posed, (With<Classic>, Without<Shown>)>,
+) {
+    let snapshot = &sandbox.snapshot;
+    let beside = sandbox.choice.compare == Compare::SideBySide;
+    let offset = if beside { 0.62 * width(snapshot) } else { 0.0 };
+    for (entity, pose, _, mut placement) in &mut shown {
+        placement.set_if_neq(Placement { offset: Vec3::X * offset });
+        set(&mut commands, entity, pose, certified_pose(&sandbox));
+    }
+    for (entity, pose, rest, mut placement) in &mut classic {
+        placement.set_if_neq(Placement { offset: Vec3::NEG_X * offset });
+        let linear = snapshot.linear.as_ref().filter(|linear| linear.len() == rest.0.len());
+        let wanted = linear.map(|linear| Pose {
+            from: rest.0.clone(),
+            to: linear.clone(),
+            blend: sandbox.choice.player.lambda(),
+        });
+        set(&mut commands, entity, pose, wanted);
+    }
+}
+
+/// How wide the boundary is, view units.
+fn width(snapshot: &Snapshot) -> f32 {
+    let Some(lattice) = &snapshot.lattice else { return 1.0 };
+    let (low, high) = lattice.boundary.bounds().unwrap_or_default();
+    ViewFrame::of(&lattice.boundary).world_length((high.x - low.x).max(0.5 * (high.y - low.y)))
+}
+
+fn set(commands: &mut Commands, entity: Entity, now: Option<&Pose>, wanted: Option<Pose>) {
+    let same = |a: &Pose, b: &Pose| Arc::ptr_eq(&a.from, &b.from) && Arc::ptr_eq(&a.to, &b.to) && a.blend == b.blend;
+    match (now, wanted) {
+        (Some(now), Some(wanted)) if same(now, &wanted) => {}
+        (_, Some(wanted)) => drop(commands.entity(entity).insert(wanted)),
+        (Some(_), None) => drop(commands.entity(entity).remove::<Pose>()),
+        (None, None) => {}
+    }
+}
+
+/// The film at λ; at its end, while something newer is being solved, that: the linear solution first, then valid states.
+fn certified_pose(sandbox: &Sandbox) -> Option<Pose> {
+    let (snapshot, player) = (&*sandbox.snapshot, &sandbox.choice.player);
+    let nodes = snapshot.lattice.as_ref()?.complex.nodes();
+    let fits = |state: &&Arc<Vec<Vec3A>>| state.len() == nodes;
+    let shows_end = !player.is_playing && player.lambda() >= 1.0;
+    if shows_end && snapshot.phase != Phase::Done {
+        let newest = snapshot.warped.as_ref().or(match snapshot.phase {
+            Phase::Adapting | Phase::Stopped => snapshot.linear.as_ref(),
+            _ => None,
+        });
+        return newest.filter(fits).map(|state| Pose::still(state.clone()));
+    }
+    let (film, lambda) = (&snapshot.film, player.lambda());
+    let after = film.iter().position(|state| state.lambda >= lambda).or(film.len().checked_sub(1))?;
+    let (from, to) = (&film[after.saturating_sub(1)], &film[after]);
+    let span = to.lambda - from.lambda;
+    let blend = if span > 0.0 { ((lambda - from.lambda) / span).clamp(0.0, 1.0) } else { 1.0 };
+    let pose = Pose { from: from.positions.clone(), to: to.positions.clone(), blend };
+    (fits(&&pose.from) && fits(&&pose.to)).then_some(pose)
+}
+
+/// Colours, ghost, wipe.
+pub(super) fn looks(
+    mut commands: Commands,
+    sandbox: Res<Sandbox>,
+    mut painted: Local<Option<(u64, Arc<Vec<f32>>)>>,
+    mut shown: Query<(Entity, &mut Looks, Has<Ghost>, Has<Classic>)>,
+) {
+    let snapshot = &sandbox.snapshot;
+    let Some((open, lattice)) = sandbox.open.as_ref().zip(snapshot.lattice.as_ref()) else { return };
+    let version = open.painting.version();
+    let fits = open.painting.ln().len() == lattice.boundary.positions.len();
+    if fits && painted.as_ref().is_none_or(|(at, values)| *at != version || values.len() != open.painting.ln().len()) {
+        *painted = Some((version, Arc::new(open.painting.importance())));
+    }
+    let importance = painted.as_ref().filter(|_| fits).map(|(_, values)| values.clone());
+    let choice = &sandbox.choice;
+    let lambda = choice.player.lambda();
+    for (entity, mut looks, has_ghost, is_classic) in &mut shown {
+        let voxels = match (choice.mode, &snapshot.importance) {
+            (Mode::Voxels(VoxelColour::Growth), Some(importance)) if lambda < 1.0 => {
+                Some(Arc::new(importance.iter().map(|f| 1.0 + lambda * (f - 1.0)).collect()))
+            }
+            (Mode::Voxels(_), importance) => importance.clone(),
+            _ => None,
+        };
+        let wiped = choice.compare == Compare::Wipe;
+        let wanted = Looks {
+            mode: if choice.mode == Mode::Fidelity && snapshot.reached.is_none() { Mode::Plain } else { choice.mode },
+            importance: importance.clone(),
+            fidelity: snapshot.reached.clone(),
+            voxels,
+            range: None,
+            marked: None,
+            wipe: wiped.then_some(Wipe { at: choice.wipe, keeps_left: is_classic }),
+        };
+        if !same_looks(&looks, &wanted) {
+            *looks = wanted;
+        }
+        if choice.ghost != has_ghost && !is_classic {
+            let mut entity = commands.entity(entity);
+            if choice.ghost { entity.insert(Ghost::default()) } else { entity.remove::<Ghost>() };
+        }
+    }
+}
+
+/// The same arrays and settings: without comparing what is in the arrays.
+fn same_looks(a: &Looks, b: &Looks) -> bool {
+    let same = |a: &Option<Arc<Vec<f32>>>, b: &Option<Arc<Vec<f32>>>| match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (None, None) => true,
+        _ => false,
+    };
+    a.mode == b.mode
+        && a.wipe == b.wipe
+        && same(&a.importance, &b.importance)
+        && same(&a.fidelity, &b.fidelity)
+        && same(&a.voxels, &b.voxels)
+}
+
+/// Radians a second.
+const TURNTABLE: f32 = 0.6;
+
+/// Fulfils what the camera was asked for, and turns the turntable.
+pub(super) fn camera(
+    mut sandbox: ResMut<Sandbox>,
+    mut orbits: Query<&mut Orbit>,
+    viewport: Res<Viewport>,
+    time: Res<Time>,
+) {
+    let Ok(mut orbit) = orbits.single_mut() else { return };
+    let mut wanted = *orbit;
+    wanted.orthographic = sandbox.choice.orthographic;
+    wanted.turntable = if sandbox.choice.turntable { TURNTABLE } else { 0.0 };
+    wanted.turn(time.delta_secs());
+    if sandbox.snapshot.lattice.is_some() && !sandbox.looks.is_empty() {
+        let sandbox = sandbox.bypass_change_detection();
+        for look in std::mem::take(&mut sandbox.looks) {
+            match look {
+                Look::From(axis) => wanted.look_from(axis),
+                Look::Frame => {
+                    let [low, high] = bounds(&sandbox.snapshot, sandbox.choice.compare == Compare::SideBySide);
+                    wanted.frame(low, high, viewport.size.x / viewport.size.y.max(1.0));
+                }
+                Look::At(place) => {
+                    if let Some(lattice) = &sandbox.snapshot.lattice {
+                        wanted.target = ViewFrame::of(&lattice.boundary).world_from_source(place);
+                        wanted.distance = wanted.distance.min(1.2);
+                    }
+                }
+            }
+        }
+    }
+    orbit.set_if_neq(wanted);
+}
+
+/// The box around what is shown, view space.
+fn bounds(snapshot: &Snapshot, beside: bool) -> [Vec3; 2] {
+    let Some(lattice) = &snapshot.lattice else { return [Vec3::ZERO, Vec3::ONE] };
+    let frame = ViewFrame::of(&lattice.boundary);
+    let (mut low, mut high) = lattice.boundary.bounds().unwrap_or_default();
+    let is_flat = high.z <= low.z;
+    let last = snapshot.film.last().map(|state| &state.positions).or(snapshot.linear.as_ref());
+    if let Some(state) = last.filter(|state| state.len() == lattice.complex.nodes()) {
+        let h = lattice.complex.grid;
+        for p in state.iter() {
+            let p = h.source_from_lattice(p.as_dvec3());
+            (low, high) = (low.min(p), high.max(p));
+        }
+    }
+    let (mut low, mut high) = (frame.world_from_source(low), frame.world_from_source(high));
+    if !is_flat {
+        // What has grown downwards is lifted onto the floor.
+        (low.y, high.y) = (0.0, high.y - low.y);
+    }
+    if beside {
+        let offset = 0.62 * width(snapshot);
+        (low.x, high.x) = (low.x - offset, high.x + offset);
+    }
+    [low, high]
+}

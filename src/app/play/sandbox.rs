@@ -1,0 +1,376 @@
+//! The sandbox without its window: what is open, what is chosen, what is solved, and how wishes come true.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use bevy::prelude::Resource;
+use glam::DVec3;
+
+use super::document::{Document, Dropped, Wanted, recognise, under};
+use super::memory::{Memory, keep};
+use super::results;
+use super::tasks::{Done, Tasks};
+use crate::boundary::Boundary;
+use crate::importance::Layer;
+use crate::panel::{Asked, Choice, Wish};
+use crate::scene::{Draft, Source};
+use crate::session::{Session, Snapshot, Subject};
+use crate::view::Axis;
+use crate::{Error, Result};
+
+/// Everything the window is about.
+#[derive(Resource)]
+pub struct Sandbox {
+    /// What is open.
+    pub open: Option<Document>,
+    /// What the user has chosen.
+    pub choice: Choice,
+    /// What the user wants and has not got yet.
+    pub wishes: Vec<Wish>,
+    /// One sentence about what went wrong last.
+    pub problem: Option<String>,
+    /// The solver's latest.
+    pub snapshot: Arc<Snapshot>,
+    /// What the camera is asked for; who moves it takes them.
+    pub looks: Vec<Look>,
+    /// Pictures of the window that are asked for.
+    pub screenshots: Vec<PathBuf>,
+    /// Files opened lately.
+    pub memory: Memory,
+    session: Session,
+    tasks: Tasks,
+    /// What the solver was told last.
+    told: Option<Told>,
+    kept: (u64, u64),
+    failure_seen: u64,
+}
+
+/// A wish that only the camera can fulfil.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Look {
+    /// At everything.
+    Frame,
+    /// From an axis.
+    From(Axis),
+    /// At a place, source units.
+    At(DVec3),
+}
+
+/// What the solver was told.
+struct Told {
+    boundary: Arc<Boundary>,
+    painting: u64,
+}
+
+impl Sandbox {
+    /// Nothing is open yet. `memory` is where to remember; the user's own place if `None`.
+    ///
+    /// # Errors
+    /// As [`Session::start`].
+    pub fn new(memory: Option<PathBuf>) -> Result<Self> {
+        Ok(Self {
+            open: None,
+            choice: Choice::default(),
+            wishes: Vec::new(),
+            problem: None,
+            snapshot: Arc::default(),
+            looks: Vec::new(),
+            screenshots: Vec::new(),
+            memory: Memory::open(memory),
+            session: Session::start()?,
+            tasks: Tasks::default(),
+            told: None,
+            kept: (0, 0),
+            failure_seen: 0,
+        })
+    }
+
+    /// What is being read or written.
+    pub fn busy(&self) -> Option<&str> {
+        self.tasks.busy()
+    }
+
+    /// Whether something is under way outside the window whose end it must notice.
+    pub fn awaits(&self) -> bool {
+        !self.tasks.is_idle() || self.snapshot.phase.is_busy() || self.told_is_old()
+    }
+
+    fn told_is_old(&self) -> bool {
+        let now = self.open.as_ref().map(|open| open.painting.version());
+        now != self.told.as_ref().map(|told| told.painting)
+    }
+
+    /// Once a frame: wishes, results, and what the solver must know. Never waits.
+    pub fn update(&mut self) {
+        for done in self.tasks.take() {
+            self.receive(done);
+        }
+        for wish in std::mem::take(&mut self.wishes) {
+            if let Err(error) = self.fulfil(wish) {
+                self.problem = Some(error.to_string());
+            }
+        }
+        self.tell();
+        let snapshot = self.session.snapshot();
+        if snapshot.version != self.snapshot.version {
+            self.snapshot = snapshot;
+        }
+        if let Some(error) = &self.snapshot.error
+            && self.failure_seen != self.snapshot.version
+        {
+            self.problem = Some(error.clone());
+            self.failure_seen = self.snapshot.version;
+        }
+    }
+
+    /// Tells the solver what has been painted since.
+    fn tell(&mut self) {
+        let Some(open) = &self.open else { return };
+        let (boundary, painting) = (&open.painting.under().boundary, open.painting.version());
+        match &mut self.told {
+            Some(told) if Arc::ptr_eq(&told.boundary, boundary) => {
+                if told.painting != painting {
+                    told.painting = painting;
+                    self.session.set_importance(Arc::new(open.painting.stack()));
+                }
+            }
+            _ => {
+                self.told = Some(Told { boundary: boundary.clone(), painting });
+                self.session.open(Subject {
+                    boundary: boundary.clone(),
+                    importance: Arc::new(open.painting.stack()),
+                    settings: open.settings(),
+                });
+            }
+        }
+    }
+
+    fn receive(&mut self, done: Done) {
+        let result = match done {
+            Done::Opened(document) => document.map(|document| self.show(*document)),
+            Done::Layers(under) => under.map(|under| {
+                if let Some(open) = &mut self.open {
+                    open.warnings = under.stack.warnings().to_vec();
+                    open.painting.set_under(*under);
+                }
+            }),
+            Done::Chosen(asked, files) => self.chosen(asked, &files),
+            Done::Saved(saved) => saved.map(|(file, edition)| {
+                self.memory.note(&file);
+                if let Some(open) = &mut self.open {
+                    open.saved(file, edition);
+                }
+            }),
+            Done::Written(path) => path.map(|_| ()),
+            Done::Kept(done) | Done::Pictured(done) => done,
+        };
+        if let Err(error) = result {
+            self.problem = Some(error.to_string());
+        }
+    }
+
+    /// A scene has been read: it takes the place of what was open.
+    fn show(&mut self, document: Document) {
+        match (&document.file, document.source()) {
+            (Some(file), _) | (None, Source::File(file)) => self.memory.note(&file.clone()),
+            (None, Source::Gallery(_)) => {}
+        }
+        self.kept = document.edition();
+        self.told = None;
+        self.problem = None;
+        self.choice.player.scrub(1.0);
+        self.open = Some(document);
+        self.looks.push(Look::Frame);
+    }
+
+    fn chosen(&mut self, asked: Asked, files: &[PathBuf]) -> Result<()> {
+        match (asked, files) {
+            (_, []) => Ok(()),
+            (Asked::Open, [path, ..]) => self.fulfil(Wish::OpenPath(path.clone())),
+            (Asked::Values, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Values { path: path.clone() })),
+            (Asked::Image, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Image { path: path.clone(), range: None })),
+            (Asked::Regions, [regions, values, ..]) => {
+                self.fulfil(Wish::AddLayer(Layer::Regions { regions: regions.clone(), values: values.clone() }))
+            }
+            (Asked::Regions, [_]) => Ok(()),
+            (Asked::SaveScene, [path, ..]) => self.fulfil(Wish::SaveTo(path.clone())),
+            (_, [path, ..]) => self.fulfil(Wish::Export(asked, path.clone())),
+        }
+    }
+
+    fn fulfil(&mut self, wish: Wish) -> Result<()> {
+        match wish {
+            Wish::Open(source) => self.read(Wanted::Source(source)),
+            Wish::OpenPath(path) => match recognise(&path, self.open.as_ref())? {
+                Dropped::Scene(path) => self.read(Wanted::Scene(path)),
+                Dropped::Source(path) => self.read(Wanted::Source(Source::File(path))),
+                Dropped::Layer(layer) => return self.fulfil(Wish::AddLayer(layer)),
+            },
+            Wish::Ask(asked) => self.tasks.ask(asked, &self.proposed_name(asked)),
+            Wish::Save => match self.open.as_ref().map(|open| open.file.clone()) {
+                Some(Some(file)) => return self.save(file),
+                Some(None) => self.tasks.ask(Asked::SaveScene, &self.proposed_name(Asked::SaveScene)),
+                None => {}
+            },
+            Wish::SaveTo(path) => return self.save(path),
+            Wish::Export(asked, path) => return self.export(asked, path),
+            Wish::AddLayer(layer) => return self.layers("reading the layer", |draft| draft.layers.push(layer)),
+            Wish::RemoveLayer(index) => return self.layers("reading the layers", |draft| remove(draft, index)),
+            Wish::ShowLayer(index, shown) => {
+                return self.layers("reading the layers", |draft| {
+                    draft.hidden.retain(|hidden| *hidden != index);
+                    if !shown {
+                        draft.hidden.push(index);
+                    }
+                });
+            }
+            Wish::SetBase(base) => return self.layers("reading the layers", |draft| draft.base = base),
+            Wish::Fill(fill) => {
+                if let Some(open) = &mut self.open {
+                    return open.painting.apply(crate::paint::Edit::Fill(fill));
+                }
+            }
+            Wish::Undo => drop(self.open.as_mut().map(|open| open.painting.undo())),
+            Wish::Redo => drop(self.open.as_mut().map(|open| open.painting.redo())),
+            Wish::SetResolution(resolution) => return self.set(|draft| draft.resolution = resolution),
+            Wish::SetFidelity(fidelity) => return self.set(|draft| draft.fidelity = fidelity),
+            Wish::SetKeys(keys) => return self.set(|draft| draft.keys = keys),
+            Wish::Cancel => self.session.cancel(),
+            Wish::Resume => self.session.resume(),
+            Wish::Frame => self.looks.push(Look::Frame),
+            Wish::LookFrom(axis) => self.looks.push(Look::From(axis)),
+            Wish::LookAt(place) => self.looks.push(Look::At(place)),
+            Wish::Screenshot => self.screenshots.push(free_name("homunculus", "png")),
+            Wish::Dismiss => self.problem = None,
+            Wish::Restore => {
+                self.memory.forget();
+                if let Some(path) = self.memory.autosave() {
+                    self.read(Wanted::Autosave(path));
+                }
+            }
+            Wish::Forget => self.memory.forget(),
+        }
+        Ok(())
+    }
+
+    fn read(&mut self, wanted: Wanted) {
+        let what = match &wanted {
+            Wanted::Source(source) => format!("reading {source}"),
+            Wanted::Scene(path) => format!("reading {}", path.display()),
+            Wanted::Autosave(_) => "restoring the last session".into(),
+        };
+        self.tasks.start(what, move || {
+            let document = Document::read(&wanted).map(|mut document| {
+                if matches!(wanted, Wanted::Autosave(_)) {
+                    document.unsaved();
+                }
+                Box::new(document)
+            });
+            Done::Opened(document)
+        });
+    }
+
+    fn save(&mut self, path: PathBuf) -> Result<()> {
+        let Some(open) = &mut self.open else { return Ok(()) };
+        open.painting.end();
+        let (scene, edition) = (open.scene()?, open.edition());
+        self.tasks.start(format!("saving {}", path.display()), move || {
+            Done::Saved(scene.save(&path).map(|()| (path, edition)))
+        });
+        Ok(())
+    }
+
+    /// Reads other layers; what is painted over them stays.
+    fn layers(&mut self, what: &str, change: impl FnOnce(&mut Draft)) -> Result<()> {
+        let Some(open) = &self.open else { return Ok(()) };
+        let scene = open.with_layers(change)?;
+        let boundary = open.painting.under().boundary.clone();
+        self.tasks.start(what, move || Done::Layers(under(&scene, Some(boundary)).map(Box::new)));
+        Ok(())
+    }
+
+    fn set(&mut self, change: impl FnOnce(&mut Draft)) -> Result<()> {
+        let Some(open) = &mut self.open else { return Ok(()) };
+        let before = open.settings();
+        open.set(change)?;
+        if open.settings() != before {
+            self.session.set_settings(open.settings());
+        }
+        Ok(())
+    }
+
+    fn export(&mut self, asked: Asked, path: PathBuf) -> Result<()> {
+        let (Some(open), Some(outcome)) = (&self.open, &self.snapshot.outcome) else {
+            return Err(Error::input("there is nothing to export yet; wait until the solver is done"));
+        };
+        let order = results::Order {
+            asked,
+            path,
+            scene: open.scene()?,
+            stack: Arc::new(open.painting.stack()),
+            boundary: open.painting.under().boundary.clone(),
+            outcome: outcome.clone(),
+            warnings: open.warnings.clone(),
+            export: self.choice.export.clone(),
+        };
+        self.tasks.start(format!("writing {}", order.path.display()), move || Done::Written(results::write(&order)));
+        Ok(())
+    }
+
+    fn proposed_name(&self, asked: Asked) -> String {
+        let title = self.open.as_ref().map_or_else(|| "scene".into(), Document::title);
+        let stem = Path::new(&title).file_stem().map_or_else(|| title.clone(), |s| s.to_string_lossy().into_owned());
+        match asked {
+            Asked::SaveScene => format!("{stem}.ron"),
+            Asked::ExportMesh => format!("{stem}-warped.{}", self.choice.export.format),
+            Asked::ExportGrowth => format!("{stem}-growth.glb"),
+            Asked::ExportReport => format!("{stem}-report.json"),
+            Asked::ExportFilm => format!("{stem}.mp4"),
+            Asked::Open | Asked::Values | Asked::Regions | Asked::Image => String::new(),
+        }
+    }
+
+    /// Writes a picture of the window.
+    pub(super) fn write_picture(&mut self, picture: image::DynamicImage, path: PathBuf) {
+        self.tasks.start_quietly(move || Done::Pictured(super::write_picture(&picture, &path).map(drop)));
+    }
+
+    /// The program is being closed: unsaved work stays to be restored, what is saved leaves nothing behind.
+    pub(super) fn close(&self) {
+        match (&self.open, self.memory.autosave()) {
+            (Some(open), Some(path)) if open.is_changed() && !self.memory.can_restore() => {
+                // Nobody is there any more to be told.
+                let _ = keep(&open.scene(), &path);
+            }
+            _ => self.memory.close(),
+        }
+    }
+
+    /// Keeps a copy of unsaved work, if there is any that has not been kept.
+    pub fn autosave(&mut self) {
+        let Some(open) = self.open.as_ref().filter(|open| open.is_changed() && !open.painting.is_painting()) else { return };
+        if self.kept == open.edition() || self.memory.can_restore() {
+            return;
+        }
+        let Some(path) = self.memory.autosave() else { return };
+        self.kept = open.edition();
+        let scene = open.scene();
+        self.tasks.start_quietly(move || Done::Kept(keep(&scene, &path)));
+    }
+}
+
+/// Takes a layer out; those above move down.
+fn remove(draft: &mut Draft, index: usize) {
+    if index < draft.layers.len() {
+        draft.layers.remove(index);
+        draft.hidden.retain(|hidden| *hidden != index);
+        for hidden in &mut draft.hidden {
+            *hidden -= usize::from(*hidden > index);
+        }
+    }
+}
+
+/// `NAME-1.EXT`, or with the first number that is free, in the working directory.
+fn free_name(name: &str, extension: &str) -> PathBuf {
+    (1..).map(|n| PathBuf::from(format!("{name}-{n}.{extension}"))).find(|path| !path.exists()).unwrap_or_default()
+}

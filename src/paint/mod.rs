@@ -1,0 +1,41 @@
+//! 3.2  Importance by hand: strokes and fills over the layers of a scene, each of which can be taken back.
+//!
+//! # Theory
+//! Painting happens in ln f at the boundary's vertices, over what the scene's [layers](crate::importance::Layer) say
+//! there. What the hand adds is kept as the difference to the layers, so that between vertices the layers keep all their
+//! detail and only the difference is interpolated.
+//!
+//! A stroke has a strength that it reaches and does not exceed, however often it passes over a place: what counts at a
+//! vertex is the greatest weight of all its dabs. So a stroke does not depend on how many dabs the pointer made of it.
+//!
+//! # Practice
+//! A [`Painting`] is at any time what replaying its edits over its layers gives, to the bit. Undo puts back the values
+//! that were there; it computes nothing.
+
+mod apply;
+mod canvas;
+mod edit;
+mod painting;
+
+pub use canvas::Canvas;
+pub use edit::{Action, Axis, Brush, Dab, Edit, Falloff, Fill};
+pub use painting::{Painting, Under};
+
+use crate::{Result, boundary::Boundary, importance::Stack};
+
+/// A scene's strokes over its layers.
+///
+/// # Errors
+/// Names the stroke, the value and its range, or the region that is not there.
+pub fn over(boundary: &Boundary, stack: Stack, strokes: &[Edit]) -> Result<Stack> {
+    if strokes.is_empty() {
+        return Ok(stack);
+    }
+    let canvas = Canvas::new(boundary);
+    for (index, edit) in strokes.iter().enumerate() {
+        edit.check(index, &canvas)?;
+    }
+    let under: Vec<f64> = stack.at_vertices(boundary).iter().map(|f| f64::from(*f).ln()).collect();
+    let painted = apply::replay(&canvas, &under, strokes);
+    Ok(stack.painted(painted.iter().zip(&under).map(|(painted, under)| painted - under).collect()))
+}

@@ -1,0 +1,85 @@
+//! The export dialog: everything the command line can write.
+
+use bevy_egui::egui::{self, Context, Ui};
+
+use super::{Asked, Choice, Facts, Wish, theme};
+
+/// How results are written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportChoice {
+    /// Whether the dialog is shown.
+    pub is_open: bool,
+    /// Extension of the mesh.
+    pub format: &'static str,
+    /// Whether the mesh gets the colours of importance, or those of the input.
+    pub colour_mesh: bool,
+    /// The same for the growth.
+    pub colour_growth: bool,
+    /// Length of the growth, seconds.
+    pub seconds: f32,
+}
+
+impl Default for ExportChoice {
+    fn default() -> Self {
+        Self { is_open: false, format: "glb", colour_mesh: false, colour_growth: true, seconds: 4.0 }
+    }
+}
+
+/// Formats a mesh can be written in.
+pub const MESH_FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
+
+pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
+    let mut is_open = choice.export.is_open;
+    egui::Window::new("Export")
+        .open(&mut is_open)
+        .collapsible(false)
+        .resizable(false)
+        .pivot(egui::Align2::CENTER_CENTER)
+        .default_pos(ctx.content_rect().center())
+        .show(ctx, |ui| {
+            ui.set_width(360.0);
+            let is_done = facts.snapshot.outcome.is_some();
+            if !is_done {
+                ui.label(egui::RichText::new("There is something to export as soon as the solver is done.").color(theme::AMBER));
+                ui.add_space(6.0);
+            }
+            ui.add_enabled_ui(is_done, |ui| content(ui, facts, &mut choice.export, wishes));
+        });
+    choice.export.is_open = is_open;
+}
+
+fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
+    part(ui, "Warped mesh", "Same vertices, same order, same materials as the input", Asked::ExportMesh, wishes, |ui| {
+        egui::ComboBox::from_id_salt("format").width(60.0).selected_text(export.format).show_ui(ui, |ui| {
+            for format in MESH_FORMATS {
+                ui.selectable_value(&mut export.format, format, format);
+            }
+        });
+        ui.checkbox(&mut export.colour_mesh, "colours of importance");
+    });
+    part(ui, "Growth animation", "GLB with morph targets: plays in any glTF viewer", Asked::ExportGrowth, wishes, |ui| {
+        ui.add(egui::DragValue::new(&mut export.seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
+            .on_hover_text("How long it grows");
+        ui.checkbox(&mut export.colour_growth, "colours of importance");
+    });
+    if facts.can_record {
+        part(ui, "Film", "MP4, GIF or PNG, as the name ends", Asked::ExportFilm, wishes, |ui| {
+            ui.label(theme::weak("as seen now, without the panels"));
+        });
+    }
+    part(ui, "Report", "JSON: what was asked, achieved and proven", Asked::ExportReport, wishes, |_| {});
+}
+
+fn part(ui: &mut Ui, name: &str, hint: &str, asked: Asked, wishes: &mut Vec<Wish>, settings: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new(name).strong());
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if theme::primary(ui, "Save…").clicked() {
+                wishes.push(Wish::Ask(asked));
+            }
+        });
+    });
+    ui.label(theme::weak(hint).small());
+    ui.horizontal(settings);
+    ui.add_space(8.0);
+}

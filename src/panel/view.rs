@@ -1,0 +1,100 @@
+//! What is shown: colours, ghost, references, the classic solution beside; and the legend over the view.
+
+use bevy_egui::egui::{self, Color32, Context, Ui};
+
+use super::{Choice, Compare, Facts, Wish, theme};
+use crate::view::{Axis, Legend, Mode, VoxelColour};
+
+pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
+    theme::section(ui, "View", |ui| {
+        theme::choices(
+            ui,
+            &mut choice.mode,
+            &[
+                (Mode::Plain, "Plain", "The file's own colours, or grey"),
+                (Mode::Importance, "Importance", "Size asked for"),
+                (Mode::Fidelity, "Fidelity", "Size achieved over size asked"),
+                (Mode::Voxels(VoxelColour::Importance), "Voxels", "The complex, coloured by the size asked for"),
+                (Mode::Voxels(VoxelColour::Growth), "Voxels λ", "The complex, coloured by the size at λ"),
+            ],
+        );
+        ui.add_space(2.0);
+        ui.horizontal(|ui| {
+            ui.checkbox(&mut choice.ghost, "Rest shape").on_hover_text("The shape before warping, translucent");
+            ui.checkbox(&mut choice.size_legend, "Sizes").on_hover_text("Cubes of ×½, ×1, ×2, ×4 to compare with");
+        });
+        ui.horizontal(|ui| {
+            ui.checkbox(&mut choice.turntable, "Turntable").on_hover_text("Turns by itself  (T)");
+            ui.checkbox(&mut choice.orthographic, "Parallel").on_hover_text("Parallels stay parallel");
+        });
+        theme::row(ui, "Classic", "What the edge optimization alone (Eq. 1) gives; crossings are red", |ui| {
+            let all = [(Compare::Off, "off", ""), (Compare::SideBySide, "beside", ""), (Compare::Wipe, "wipe", "")];
+            theme::choices(ui, &mut choice.compare, &all);
+        });
+        if choice.compare == Compare::Wipe {
+            theme::row(ui, "Line", "Classic to the left, certified to the right", |ui| {
+                ui.add(egui::Slider::new(&mut choice.wipe, 0.0..=1.0).show_value(false));
+            });
+        }
+        theme::row(ui, "Look from", "1, 3, 7; with Ctrl from the other side", |ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            for (axis, name) in [(Axis::Front, "front"), (Axis::Right, "side"), (Axis::Top, "top")] {
+                if ui.button(name).clicked() {
+                    wishes.push(Wish::LookFrom(axis));
+                }
+            }
+            if ui.button("all").on_hover_text("Everything  (F)").clicked() {
+                wishes.push(Wish::Frame);
+            }
+        });
+    });
+}
+
+/// What colours mean, in the lower left corner of the view.
+pub(super) fn legend(ctx: &Context, facts: &Facts, middle: egui::Rect) {
+    let Some(legend) = &facts.legend else { return };
+    let at = middle.left_bottom() + egui::vec2(16.0, -16.0);
+    egui::Area::new("legend".into())
+        .order(egui::Order::Middle)
+        .interactable(false)
+        .pivot(egui::Align2::LEFT_BOTTOM)
+        .fixed_pos(at)
+        .show(ctx, |ui| {
+            let fill = Color32::from_white_alpha(215);
+            egui::Frame::new().fill(fill).corner_radius(6.0).inner_margin(10.0).show(ui, |ui| bar(ui, legend));
+        });
+}
+
+const BAR: egui::Vec2 = egui::Vec2::new(200.0, 12.0);
+
+fn bar(ui: &mut Ui, legend: &Legend) {
+    ui.spacing_mut().item_spacing.y = 3.0;
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new(legend.title).strong());
+        ui.label(theme::weak(legend.unit).small());
+    });
+    let (rect, _) = ui.allocate_exact_size(BAR + egui::vec2(24.0, 16.0), egui::Sense::hover());
+    let bar = egui::Rect::from_min_size(rect.min + egui::vec2(12.0, 0.0), BAR);
+    let mut mesh = egui::Mesh::default();
+    let last = (legend.stops.len().max(2) - 1) as f32;
+    for (k, (_, [r, g, b])) in legend.stops.iter().enumerate() {
+        let x = egui::lerp(bar.left()..=bar.right(), k as f32 / last);
+        let colour = Color32::from_rgb(*r, *g, *b);
+        mesh.colored_vertex(egui::pos2(x, bar.top()), colour);
+        mesh.colored_vertex(egui::pos2(x, bar.bottom()), colour);
+        if k > 0 {
+            let first = 2 * (k as u32 - 1);
+            mesh.add_triangle(first, first + 1, first + 2);
+            mesh.add_triangle(first + 1, first + 2, first + 3);
+        }
+    }
+    ui.painter().add(mesh);
+    let (colour, font) = (ui.visuals().text_color(), egui::TextStyle::Small.resolve(ui.style()));
+    for (t, text) in &legend.ticks {
+        let x = egui::lerp(bar.left()..=bar.right(), *t);
+        let tick = [egui::pos2(x, bar.bottom()), egui::pos2(x, bar.bottom() + 3.0)];
+        ui.painter().line_segment(tick, egui::Stroke::new(1.0, colour));
+        let at = egui::pos2(x, bar.bottom() + 3.0);
+        ui.painter().text(at, egui::Align2::CENTER_TOP, text, font.clone(), colour);
+    }
+}

@@ -1,0 +1,129 @@
+//! The solver beside a window: its own thread, its own world, states handed over as they come.
+//!
+//! # Theory
+//! Eq. 1's matrix depends on the lattice alone, so after a dab only its right-hand side changes: the linear solution is
+//! there within a few cycles of a multigrid hierarchy that is kept, from the solution of before ([`Linear`]). The
+//! certified solve then goes on from the last valid state to the new sizes, and when it has come to rest the growth is
+//! solved from rest again, so that the film shows what is painted.
+//!
+//! # Practice
+//! A [`Session`] never blocks who asks it. Orders go in by a channel, of several waiting ones only the newest of a kind
+//! counts; a [`Snapshot`] comes out, the latest one wins, its arrays are shared and never copied. Cancelling takes one
+//! iteration. One core is left to the window.
+
+mod linear;
+mod snapshot;
+mod worker;
+
+pub use linear::Linear;
+pub use snapshot::{Histogram, Lattice, Phase, Snapshot, State};
+
+use std::{
+    sync::{Arc, Mutex, mpsc},
+    time::Instant,
+};
+
+use crate::{boundary::Boundary, importance::Stack, schedule::Settings};
+
+/// What to solve.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// B.
+    pub boundary: Arc<Boundary>,
+    /// F.
+    pub importance: Arc<Stack>,
+    /// How.
+    pub settings: Settings,
+}
+
+/// What the solver is told.
+enum Order {
+    Open(Subject),
+    Importance(Arc<Stack>, Instant),
+    Settings(Settings),
+    Cancel,
+    Resume,
+    Shutdown,
+}
+
+/// A solver in the background. Dropping it ends its thread.
+pub struct Session {
+    orders: mpsc::Sender<Order>,
+    shared: Arc<Shared>,
+}
+
+/// What both sides see.
+#[derive(Default)]
+struct Shared {
+    snapshot: Mutex<Arc<Snapshot>>,
+}
+
+impl Shared {
+    /// The latest snapshot. A lock that was poisoned holds a whole snapshot all the same.
+    fn latest(&self) -> Arc<Snapshot> {
+        self.snapshot.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone()
+    }
+
+    fn publish(&self, snapshot: Snapshot) {
+        *self.snapshot.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Arc::new(snapshot);
+    }
+}
+
+impl Session {
+    /// Starts the thread, which waits for a [`Subject`].
+    ///
+    /// # Errors
+    /// A fault where the system gives no thread.
+    pub fn start() -> crate::Result<Self> {
+        let (orders, inbox) = mpsc::channel();
+        let shared = Arc::new(Shared::default());
+        let seen = shared.clone();
+        std::thread::Builder::new()
+            .name("solver".into())
+            .spawn(move || worker::work(&inbox, &seen))
+            .map_err(|e| crate::Error::Fault(format!("starting the solver's thread: {e}")))?;
+        Ok(Self { orders, shared })
+    }
+
+    /// Solves something else.
+    pub fn open(&self, subject: Subject) {
+        self.order(Order::Open(subject));
+    }
+
+    /// Goes on with another importance of the same boundary.
+    pub fn set_importance(&self, importance: Arc<Stack>) {
+        self.order(Order::Importance(importance, Instant::now()));
+    }
+
+    /// Solves with other settings.
+    pub fn set_settings(&self, settings: Settings) {
+        self.order(Order::Settings(settings));
+    }
+
+    /// Stops solving within an iteration; what has been reached stays.
+    pub fn cancel(&self) {
+        self.order(Order::Cancel);
+    }
+
+    /// Solves what [`cancel`](Self::cancel) stopped, from the last valid state.
+    pub fn resume(&self) {
+        self.order(Order::Resume);
+    }
+
+    /// Where it is: cheap, never waits for the solver.
+    pub fn snapshot(&self) -> Arc<Snapshot> {
+        self.shared.latest()
+    }
+
+    fn order(&self, order: Order) {
+        // The thread ends only with the session.
+        let _ = self.orders.send(order);
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        // Not waited for: it ends after its iteration, and holds nothing that others need.
+        self.order(Order::Shutdown);
+    }
+}

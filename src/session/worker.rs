@@ -1,0 +1,374 @@
+//! The solver's thread: takes orders, solves, publishes.
+
+use std::{
+    sync::{Arc, mpsc},
+    time::{Duration, Instant},
+};
+
+use super::{Histogram, Lattice, Linear, Order, Phase, Shared, Snapshot, State, Subject};
+use crate::{
+    Result,
+    collision::plugin::{CollisionProblem, Warped},
+    edge::plugin::LinearSolution,
+    film::plugin::Reel,
+    importance::{Stack, cell_importance, plugin::Importance},
+    schedule::{Domain, Run, Settings, domain_summary},
+    scene::check_resolution,
+    transfer::Binding,
+    voxel::{self, plugin::SuspectedWelds, suspected_welds, voxelize},
+};
+
+/// Between two snapshots of a running solve: each shows a state, and a window draws no more than sixty a second.
+const PUBLISH_EVERY: Duration = Duration::from_millis(40);
+
+/// So long after the last dab the solve goes on: while a stroke is being made, the linear solution has the machine.
+const QUIET: Duration = Duration::from_millis(200);
+
+/// Works until told to end. Runs in a pool of its own that leaves one core to the window.
+pub(super) fn work(inbox: &mpsc::Receiver<Order>, shared: &Shared) {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    // Where the system gives no threads the common pool does the work.
+    let _pool = rayon::ThreadPoolBuilder::new().num_threads((cores - 1).max(1)).use_current_thread().build();
+    let mut worker = Worker { shared, now: Snapshot::default(), subject: None, job: None, published: Instant::now() };
+    loop {
+        let order = match worker.patience() {
+            None => inbox.recv().ok(),
+            Some(time) => match inbox.recv_timeout(time) {
+                Err(mpsc::RecvTimeoutError::Timeout) => {
+                    worker.advance();
+                    continue;
+                }
+                order => order.ok(),
+            },
+        };
+        let Some(order) = order else { return };
+        if !worker.obey(newest(order, inbox)) {
+            return;
+        }
+    }
+}
+
+/// Of orders that wait only the newest of a kind counts, as each replaces the one before.
+fn newest(first: Order, inbox: &mpsc::Receiver<Order>) -> Vec<Order> {
+    let mut orders: Vec<Order> = Vec::new();
+    for order in std::iter::once(first).chain(inbox.try_iter()) {
+        if matches!(order, Order::Open(_)) {
+            orders.clear();
+        }
+        orders.retain(|o| std::mem::discriminant(o) != std::mem::discriminant(&order));
+        orders.push(order);
+    }
+    orders
+}
+
+/// What there is of a subject.
+enum Job {
+    Voxelize,
+    Solve(Box<Solve>),
+}
+
+struct Solve {
+    run: Run,
+    linear: Linear,
+    /// Importance has changed and the run does not know yet; when it may be told.
+    changed: Option<Instant>,
+    importance: Vec<f32>,
+    /// Which phase was stopped.
+    stopped: Option<Phase>,
+}
+
+struct Worker<'a> {
+    shared: &'a Shared,
+    now: Snapshot,
+    subject: Option<Subject>,
+    job: Option<Job>,
+    published: Instant,
+}
+
+impl Worker<'_> {
+    /// How long to wait for orders before going on; `None` for ever.
+    fn patience(&self) -> Option<Duration> {
+        match &self.job {
+            Some(Job::Solve(solve)) if solve.changed.is_some() => {
+                solve.changed.map(|at| at.saturating_duration_since(Instant::now()))
+            }
+            Some(_) if self.now.phase.is_busy() => Some(Duration::ZERO),
+            _ => None,
+        }
+    }
+
+    fn publish(&mut self) {
+        self.now.version += 1;
+        self.published = Instant::now();
+        self.shared.publish(self.now.clone());
+    }
+
+    /// False when told to end.
+    fn obey(&mut self, orders: Vec<Order>) -> bool {
+        for order in orders {
+            let result = match order {
+                Order::Shutdown => return false,
+                Order::Open(subject) => self.open(subject),
+                Order::Importance(stack, at) => self.set_importance(stack, Some(at)),
+                Order::Settings(settings) => self.set_settings(settings),
+                Order::Cancel => {
+                    self.stop();
+                    Ok(())
+                }
+                Order::Resume => {
+                    self.resume();
+                    Ok(())
+                }
+            };
+            self.note(result);
+        }
+        true
+    }
+
+    fn note(&mut self, result: Result<()>) {
+        if let Err(error) = result {
+            self.now.phase = Phase::Failed;
+            self.now.error = Some(error.to_string());
+            self.job = None;
+            self.publish();
+        }
+    }
+
+    fn open(&mut self, subject: Subject) -> Result<()> {
+        let version = self.now.version;
+        self.now = Snapshot { version, phase: Phase::Preparing, ..Snapshot::default() };
+        check_resolution(subject.settings.resolution)?;
+        self.subject = Some(subject);
+        self.job = Some(Job::Voxelize);
+        self.publish();
+        Ok(())
+    }
+
+    fn set_settings(&mut self, settings: Settings) -> Result<()> {
+        let Some(subject) = &mut self.subject else { return Ok(()) };
+        let same_lattice = subject.settings.resolution == settings.resolution && self.now.phase != Phase::Failed;
+        subject.settings = settings;
+        let subject = subject.clone();
+        if same_lattice && self.job.is_some() { self.set_importance(subject.importance, None) } else { self.open(subject) }
+    }
+
+    /// The linear solution now; the rest once no more dabs come. `at` is when the change was ordered.
+    fn set_importance(&mut self, stack: Arc<Stack>, at: Option<Instant>) -> Result<()> {
+        let Some(subject) = &mut self.subject else { return Ok(()) };
+        subject.importance = stack;
+        let (Some(Job::Solve(solve)), Some(lattice)) = (&mut self.job, &self.now.lattice) else { return Ok(()) };
+        let (importance, linear) = solve.linear.solve(&subject.boundary, &lattice.complex, &subject.importance);
+        self.now.linear = Some(Arc::new(linear.to_vec()));
+        self.now.importance = Some(Arc::new(importance.clone()));
+        solve.importance = importance;
+        solve.changed = Some(Instant::now() + QUIET);
+        solve.stopped = None;
+        self.now.phase = Phase::Adapting;
+        self.now.fraction = 0.0;
+        self.now.film_is_current = false;
+        self.now.warped = None;
+        self.now.certificate = None;
+        self.now.outcome = None;
+        self.now.dab_milliseconds = at.map(|at| at.elapsed().as_secs_f64() * 1e3).or(self.now.dab_milliseconds);
+        self.publish();
+        Ok(())
+    }
+
+    fn stop(&mut self) {
+        if !self.now.phase.is_busy() {
+            return;
+        }
+        if let Some(Job::Solve(solve)) = &mut self.job {
+            solve.stopped = Some(self.now.phase);
+        }
+        self.now.phase = Phase::Stopped;
+        self.publish();
+    }
+
+    fn resume(&mut self) {
+        if self.now.phase != Phase::Stopped {
+            return;
+        }
+        match &mut self.job {
+            Some(Job::Solve(solve)) => {
+                self.now.phase = solve.stopped.take().unwrap_or(Phase::Growing);
+            }
+            Some(Job::Voxelize) => self.now.phase = Phase::Preparing,
+            None => return,
+        }
+        self.publish();
+    }
+
+    /// The next piece of work.
+    fn advance(&mut self) {
+        let result = match &self.job {
+            None => Ok(()),
+            Some(Job::Voxelize) => self.prepare(),
+            Some(Job::Solve(solve)) if solve.changed.is_some() && self.now.phase != Phase::Stopped => self.adapt(),
+            Some(Job::Solve(_)) if self.now.phase == Phase::Checking => self.finish(),
+            Some(Job::Solve(_)) => self.iterate(),
+        };
+        self.note(result);
+    }
+
+    /// Lattice, importance, linear solution.
+    fn prepare(&mut self) -> Result<()> {
+        let Some(Subject { boundary, importance: stack, settings }) = self.subject.clone() else { return Ok(()) };
+        let complex = Arc::new(voxelize(&boundary, settings.resolution)?);
+        let binding = Arc::new(Binding::new(&boundary, &complex));
+        let welds = suspected_welds(&boundary, &boundary.welded(), &complex);
+        let summary = domain_summary(&complex, settings.resolution, welds);
+        self.now.lattice = Some(Lattice { boundary: boundary.clone(), complex: complex.clone(), binding, summary });
+        self.publish();
+
+        let mut linear = Linear::new(&boundary, &complex);
+        let (nodes, solution) = linear.solve(&boundary, &complex, &stack);
+        let solution = solution.to_vec();
+        self.now.linear = Some(Arc::new(solution.clone()));
+        self.now.importance = Some(Arc::new(nodes.clone()));
+        self.now.phase = Phase::Growing;
+        self.publish();
+
+        let importance = Importance { cells: cell_importance(&complex, &nodes), nodes: nodes.clone(), region_of_cell: linear.regions().to_vec() };
+        let mut run = Run::new(Domain::body(boundary, stack, settings))?;
+        run.insert((voxel::plugin::Lattice(complex), SuspectedWelds(welds), importance, LinearSolution(solution)));
+        let solve = Solve { run, linear, changed: None, importance: nodes, stopped: None };
+        self.job = Some(Job::Solve(Box::new(solve)));
+        Ok(())
+    }
+
+    /// Tells the run what has changed: from the last valid state if there is one, else from rest.
+    fn adapt(&mut self) -> Result<()> {
+        let (domain, Some(Job::Solve(solve))) = (self.subject.as_ref().map(domain), &mut self.job) else { return Ok(()) };
+        let Some(domain) = domain else { return Ok(()) };
+        solve.changed = None;
+        let (importance, linear) = solve.parts(self.now.linear.as_deref());
+        if solve.run.go_on(domain.clone(), importance, linear) {
+            self.now.phase = Phase::Adapting;
+        } else {
+            let (importance, linear) = solve.parts(self.now.linear.as_deref());
+            solve.run.restart(domain, importance, linear);
+            self.now.phase = Phase::Growing;
+        }
+        self.publish();
+        Ok(())
+    }
+
+    fn iterate(&mut self) -> Result<()> {
+        let Some(Job::Solve(solve)) = &mut self.job else { return Ok(()) };
+        let done = solve.run.step()?;
+        let progress = solve.run.progress();
+        let adapting = self.now.phase == Phase::Adapting;
+        self.now.fraction = progress.fraction;
+        self.now.lambda = if adapting { 1.0 } else { progress.lambda };
+        if progress.size_error_p95.is_finite() {
+            self.now.size_error_p95 = Some(f64::from(progress.size_error_p95));
+        }
+        let has_key = self.take_film(adapting);
+        if done {
+            if adapting { self.grow_again() } else { self.now.phase = Phase::Checking }
+            self.take_state(true);
+            self.publish();
+        } else if has_key || self.published.elapsed() >= PUBLISH_EVERY {
+            self.take_state(has_key);
+            self.publish();
+        }
+        Ok(())
+    }
+
+    /// After the last valid state has been led to what is painted: the film.
+    fn grow_again(&mut self) {
+        self.take_state(true);
+        let (Some(subject), Some(Job::Solve(solve))) = (&self.subject, &mut self.job) else { return };
+        let (importance, linear) = solve.parts(self.now.linear.as_deref());
+        solve.run.restart(domain(subject), importance, linear);
+        self.now.phase = Phase::Growing;
+    }
+
+    /// The present state; with its histogram where it is one of the film.
+    fn take_state(&mut self, with_histogram: bool) {
+        let (Some(Job::Solve(solve)), Some(lattice)) = (&self.job, &self.now.lattice) else { return };
+        let (Some(Warped(warped)), Some(CollisionProblem(problem))) = (solve.run.get(), solve.run.get()) else { return };
+        // While the film is solved again, what is shown is the state that was led to the new sizes.
+        let keeps_adapted = self.now.phase == Phase::Growing && !self.now.film.is_empty() && !self.now.film_is_current;
+        if keeps_adapted && self.now.warped.is_some() {
+            return;
+        }
+        if with_histogram {
+            let histogram = Histogram::new(&lattice.complex, &problem.importance, warped);
+            self.now.histogram = Some(Arc::new(histogram));
+            self.now.reached = Some(Arc::new(lattice.reached(&problem.importance, warped)));
+        }
+        self.now.warped = Some(Arc::new(warped.clone()));
+        self.now.seconds = solve.run.seconds();
+    }
+
+    /// Keyframes that are new. A film of the importance before stays until the new one is whole.
+    fn take_film(&mut self, adapting: bool) -> bool {
+        let Some(Job::Solve(solve)) = &self.job else { return false };
+        let Some(Reel(film)) = solve.run.get() else { return false };
+        let keyframes = film.keyframes();
+        if adapting {
+            self.now.certificate = keyframes.last().map(|k| k.certificate.clone());
+            return false;
+        }
+        let replaces = self.now.film.is_empty() || self.now.film_is_current;
+        if !replaces || keyframes.len() <= self.now.film.len() {
+            return false;
+        }
+        self.now.film_is_current = true;
+        self.now.film.extend(keyframes[self.now.film.len()..].iter().map(State::of));
+        self.now.certificate = keyframes.last().map(|k| k.certificate.clone());
+        true
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        let Some(Job::Solve(solve)) = &mut self.job else { return Ok(()) };
+        let outcome = solve.run.outcome()?;
+        if let Some(Reel(film)) = solve.run.get() {
+            self.now.film = film.keyframes().iter().map(State::of).collect();
+        }
+        self.now.film_is_current = true;
+        self.now.warped = self.now.film.last().map(|state| state.positions.clone());
+        self.now.certificate = Some(outcome.certificate.clone());
+        self.now.size_error_p95 = Some(outcome.fidelity.p95);
+        self.now.seconds = outcome.seconds.clone();
+        if let (Some(lattice), Some(warped), Some(CollisionProblem(problem))) =
+            (&self.now.lattice, &self.now.warped, solve.run.get())
+        {
+            self.now.histogram = Some(Arc::new(Histogram::new(&lattice.complex, &problem.importance, warped)));
+            self.now.reached = Some(Arc::new(lattice.reached(&problem.importance, warped)));
+        }
+        self.now.outcome = Some(Arc::new(outcome));
+        (self.now.phase, self.now.fraction, self.now.lambda) = (Phase::Done, 1.0, 1.0);
+        self.publish();
+        Ok(())
+    }
+}
+
+impl Solve {
+    /// What a run needs to know of a change.
+    fn parts(&self, linear: Option<&Vec<glam::Vec3A>>) -> (Importance, LinearSolution) {
+        let cells = self.run.get::<voxel::plugin::Lattice>().map(|lattice| cell_importance(&lattice.0, &self.importance));
+        let importance = Importance {
+            cells: cells.unwrap_or_default(),
+            nodes: self.importance.clone(),
+            region_of_cell: self.linear.regions().to_vec(),
+        };
+        (importance, LinearSolution(linear.cloned().unwrap_or_default()))
+    }
+}
+
+impl State {
+    fn of(keyframe: &crate::film::Keyframe) -> Self {
+        Self {
+            lambda: keyframe.lambda,
+            positions: Arc::new(keyframe.positions.clone()),
+            certificate: keyframe.certificate.clone(),
+        }
+    }
+}
+
+fn domain(subject: &Subject) -> Domain {
+    Domain::body(subject.boundary.clone(), subject.importance.clone(), subject.settings.clone())
+}

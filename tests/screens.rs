@@ -1,0 +1,233 @@
+//! Contract of the real window, where there is Xvfb and a Vulkan driver: it opens, a scenario paints, plays, opens a broken
+//! file and saves, and what is seen is what was looked at and found good: small pictures in `tests/screens`, compared by
+//! eye's measure. `BLESS=1 cargo test --test screens` writes them anew; look at each before keeping it.
+#![cfg(feature = "window")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
+#![expect(clippy::print_stdout, reason = "skipping is said aloud")]
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+
+use image::imageops::FilterType;
+use image::{DynamicImage, RgbImage};
+
+/// A display of its own.
+struct Display {
+    server: Child,
+    number: String,
+}
+
+impl Display {
+    /// `None`, and a word, where the window cannot be shown.
+    fn open() -> Option<Self> {
+        let mut server = Command::new("Xvfb");
+        server.args(["-displayfd", "1", "-screen", "0", "1920x1200x24", "-nolisten", "tcp"]);
+        let Ok(mut server) = server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn() else {
+            println!("skipped: there is no Xvfb");
+            return None;
+        };
+        let mut number = String::new();
+        let _ = BufReader::new(server.stdout.take()?).read_line(&mut number);
+        let display = Self { server, number: format!(":{}", number.trim()) };
+        if let Err(error) = homunculus::view::adapter() {
+            println!("skipped: {error}");
+            return None;
+        }
+        Some(display)
+    }
+
+    /// Runs the program with its own memory in `folder`.
+    fn play(&self, folder: &Path, arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_homunculus"))
+            .arg("play")
+            .args(arguments)
+            .current_dir(folder)
+            .env("DISPLAY", &self.number)
+            .env("XDG_DATA_HOME", folder)
+            .env_remove("WAYLAND_DISPLAY")
+            .output()
+            .unwrap()
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+/// Width and height of what is kept: small, and still telling a missing label.
+const KEPT: (u32, u32) = (480, 270);
+
+/// What the eye tells apart: both are blurred to blocks of 4 pixels; then hardly any block may differ clearly, and all of
+/// them together hardly at all. Levels of 255.
+fn looks_like(a: &RgbImage, b: &RgbImage) -> Result<(), String> {
+    let small = |picture: &RgbImage| {
+        image::imageops::resize(picture, KEPT.0 / 4, KEPT.1 / 4, FilterType::Triangle)
+    };
+    let (a, b) = (small(a), small(b));
+    let differences: Vec<f64> = a
+        .pixels()
+        .zip(b.pixels())
+        .map(|(a, b)| a.0.iter().zip(b.0).map(|(a, b)| f64::from(a.abs_diff(b))).sum::<f64>() / 3.0)
+        .collect();
+    let mean = differences.iter().sum::<f64>() / differences.len() as f64;
+    let clearly = differences.iter().filter(|d| **d > 30.0).count() as f64 / differences.len() as f64;
+    if mean < 4.0 && clearly < 0.02 { Ok(()) } else { Err(format!("mean {mean:.2}, clearly different {:.1} %", clearly * 100.0)) }
+}
+
+fn shrunk(path: &Path) -> RgbImage {
+    let picture = image::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    picture.resize_exact(KEPT.0, KEPT.1, FilterType::Triangle).to_rgb8()
+}
+
+fn kept(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screens").join(name).with_extension("png")
+}
+
+const SCENE: &str = "(version: 1, source: \"gallery:hand\", resolution: 24, keys: 4)";
+
+/// Pictures are taken a frame after they are asked for, and written on a thread.
+const SCENARIO: &str = "
+wait done
+frames 6
+shot done.png
+frames 4
+lambda 0.5
+frames 3
+expect lambda 0.5
+shot half.png
+frames 4
+lambda 1
+key space
+frames 4
+key space
+key home
+frames 2
+expect lambda 0
+key end
+key b
+drag 600 330 640 330 6 left
+frames 2
+expect strokes 1
+key z ctrl
+expect strokes 0
+key z ctrl shift
+expect strokes 1
+wait done
+frames 4
+shot painted.png
+frames 4
+open broken.obj
+wait idle
+frames 3
+expect problem broken.obj
+expect strokes 1
+shot problem.png
+frames 4
+key escape
+expect calm
+save saved.ron
+mesh out.glb
+wait idle
+frames 2
+expect calm
+key v
+move 640 40
+show help
+frames 3
+shot help.png
+frames 4
+show help
+show export
+frames 3
+shot export.png
+frames 4
+show export
+resize 1920 1080
+frames 6
+key f
+frames 4
+shot large.png
+frames 6
+quit
+";
+
+#[test]
+fn the_window_opens_paints_plays_refuses_and_saves() {
+    let Some(display) = Display::open() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("hand.ron", SCENE);
+    write("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    write("scenario.txt", SCENARIO);
+    let output = display.play(folder.path(), &["hand.ron", "--script", "scenario.txt", "--size", "1280,720"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    let saved = homunculus::scene::Scene::load(&folder.path().join("saved.ron")).unwrap();
+    assert_eq!(saved.strokes.len(), 1);
+    assert!(folder.path().join("out.glb").is_file());
+
+    let mut wrong = Vec::new();
+    for name in ["done", "half", "painted", "problem", "help", "export", "large"] {
+        let now = shrunk(&folder.path().join(name).with_extension("png"));
+        if std::env::var_os("BLESS").is_some() {
+            DynamicImage::from(now.clone()).save(kept(name)).unwrap();
+        }
+        if let Err(how) = looks_like(&now, &shrunk(&kept(name))) {
+            let seen = std::env::temp_dir().join(format!("homunculus-screen-{name}.png"));
+            std::fs::copy(folder.path().join(name).with_extension("png"), &seen).unwrap();
+            wrong.push(format!("{name}: {how}; see {}", seen.display()));
+        }
+        let size = std::fs::metadata(kept(name)).unwrap().len();
+        assert!(size <= 100_000, "{name} takes {size} bytes");
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn sabotage_another_picture_is_seen() {
+    for (a, b) in [("done", "half"), ("done", "help"), ("done", "export"), ("done", "large")] {
+        assert!(looks_like(&shrunk(&kept(a)), &shrunk(&kept(b))).is_err(), "{a} and {b}");
+    }
+    assert!(looks_like(&shrunk(&kept("done")), &shrunk(&kept("done"))).is_ok());
+}
+
+#[test]
+fn without_a_display_it_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    if homunculus::view::adapter().is_err() {
+        println!("skipped: there is no Vulkan driver, which is asked for first");
+        return;
+    }
+    for display in [None, Some(":63")] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_homunculus"));
+        command.arg("play").env_remove("WAYLAND_DISPLAY").env_remove("DISPLAY").env("XDG_DATA_HOME", folder.path());
+        if let Some(display) = display {
+            command.env("DISPLAY", display);
+        }
+        let output = command.output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.lines().count() == 1 && said.contains("DISPLAY"), "{said}");
+    }
+}
+
+#[test]
+fn without_a_driver_it_names_the_package() {
+    let folder = tempfile::tempdir().unwrap();
+    // The Vulkan loader finds no driver where this names a file that is none.
+    let nothing = folder.path().join("none.json");
+    let output = Command::new(env!("CARGO_BIN_EXE_homunculus"))
+        .arg("play")
+        .env("VK_DRIVER_FILES", &nothing)
+        .env("VK_ICD_FILENAMES", &nothing)
+        .env("XDG_DATA_HOME", folder.path())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.lines().count() == 1 && said.contains("mesa-vulkan-drivers"), "{said}");
+}

@@ -1,0 +1,454 @@
+//! Contract of the sandbox: pointer and keys do what the help says, importance changes where it is painted, what is saved
+//! comes back, an error leaves what was open as it was. First without a window, by Bevy's own input messages; then, where
+//! there is Xvfb and a Vulkan driver, the real window, looked at.
+#![cfg(feature = "window")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use bevy::input::keyboard::{Key, KeyboardInput};
+use bevy::input::mouse::{MouseButtonInput, MouseScrollUnit, MouseWheel};
+use bevy::input::{ButtonState, InputPlugin};
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy::window::{CursorMoved, FileDragAndDrop, PrimaryWindow, WindowPlugin};
+use glam::DVec3;
+use homunculus::app::play::{PlayPlugin, PointerOnPanel, Sandbox, Shown};
+use homunculus::panel::{Asked, Compare, Tool, Wish};
+use homunculus::scene::{Draft, Scene, Source};
+use homunculus::session::Phase;
+use homunculus::view::{Orbit, Pose};
+
+/// Longest wait for anything here; a fault, not a slow machine, is what reaches it.
+const PATIENCE: Duration = Duration::from_secs(240);
+
+/// The sandbox without a window.
+struct Stage {
+    app: App,
+    window: Entity,
+    folder: tempfile::TempDir,
+}
+
+impl Stage {
+    fn empty() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, InputPlugin, WindowPlugin::default()))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)))
+            .insert_resource(Sandbox::new(Some(folder.path().join("memory"))).unwrap())
+            .add_plugins(PlayPlugin);
+        app.finish();
+        app.cleanup();
+        app.update();
+        let window = app.world_mut().query_filtered::<Entity, With<PrimaryWindow>>().single(app.world()).unwrap();
+        Self { app, window, folder }
+    }
+
+    /// The hand at a low resolution, its lattice there.
+    fn hand() -> Self {
+        let mut stage = Self::empty();
+        let path = stage.path("hand.ron");
+        let mut draft = Draft::of(Source::Gallery("hand".into()));
+        (draft.resolution, draft.keys) = (20, 4);
+        Scene::new(draft).unwrap().save(&path).unwrap();
+        stage.wish(Wish::OpenPath(path));
+        stage.wait("the lattice", |s| s.open.is_some() && s.snapshot.lattice.is_some());
+        stage.app.update();
+        stage
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn sandbox(&mut self) -> Mut<'_, Sandbox> {
+        self.app.world_mut().resource_mut::<Sandbox>()
+    }
+
+    fn wish(&mut self, wish: Wish) {
+        self.sandbox().wishes.push(wish);
+        self.app.update();
+    }
+
+    fn wait(&mut self, what: &str, until: impl Fn(&Sandbox) -> bool) {
+        let start = Instant::now();
+        while !until(&self.sandbox()) {
+            assert!(start.elapsed() < PATIENCE, "{what} did not come: {:?}", self.sandbox().problem);
+            self.app.update();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn solved(&mut self) {
+        self.wait("the end of the solve", |s| s.snapshot.phase == Phase::Done && !s.awaits());
+        self.app.update();
+    }
+
+    fn calm(&mut self) {
+        self.wait("the end of the tasks", |s| s.busy().is_none() && s.wishes.is_empty());
+        self.app.update();
+    }
+
+    fn move_to(&mut self, x: f32, y: f32) {
+        let moved = CursorMoved { window: self.window, position: Vec2::new(x, y), delta: None };
+        self.app.world_mut().write_message(moved);
+        self.app.update();
+    }
+
+    fn button(&mut self, button: MouseButton, state: ButtonState) {
+        self.app.world_mut().write_message(MouseButtonInput { button, state, window: self.window });
+        self.app.update();
+    }
+
+    fn drag(&mut self, button: MouseButton, from: [f32; 2], to: [f32; 2]) {
+        self.move_to(from[0], from[1]);
+        self.button(button, ButtonState::Pressed);
+        for k in 1..=6 {
+            let t = k as f32 / 6.0;
+            self.move_to(from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1]));
+        }
+        self.button(button, ButtonState::Released);
+    }
+
+    fn wheel(&mut self, y: f32) {
+        let unit = MouseScrollUnit::Line;
+        let phase = bevy::input::touch::TouchPhase::Moved;
+        self.app.world_mut().write_message(MouseWheel { unit, x: 0.0, y, window: self.window, phase });
+        self.app.update();
+    }
+
+    fn write_key(&mut self, key_code: KeyCode, logical_key: Key, state: ButtonState) {
+        let window = self.window;
+        let message = KeyboardInput { key_code, logical_key, state, text: None, repeat: false, window };
+        self.app.world_mut().write_message(message);
+        self.app.update();
+    }
+
+    fn press(&mut self, key: Key) {
+        self.write_key(KeyCode::F24, key.clone(), ButtonState::Pressed);
+        self.write_key(KeyCode::F24, key, ButtonState::Released);
+    }
+
+    fn key(&mut self, character: &str) {
+        self.press(Key::Character(character.into()));
+    }
+
+    fn control(&mut self, character: &str, shift: bool) {
+        self.write_key(KeyCode::ControlLeft, Key::Control, ButtonState::Pressed);
+        if shift {
+            self.write_key(KeyCode::ShiftLeft, Key::Shift, ButtonState::Pressed);
+        }
+        self.key(character);
+        if shift {
+            self.write_key(KeyCode::ShiftLeft, Key::Shift, ButtonState::Released);
+        }
+        self.write_key(KeyCode::ControlLeft, Key::Control, ButtonState::Released);
+    }
+
+    fn orbit(&mut self) -> Orbit {
+        *self.app.world_mut().query::<&Orbit>().single(self.app.world()).unwrap()
+    }
+
+    fn bits(&mut self) -> Vec<u64> {
+        self.sandbox().open.as_ref().unwrap().painting.ln().iter().map(|ln| ln.to_bits()).collect()
+    }
+
+    /// λ of the pose that is shown.
+    fn shown_lambda(&mut self) -> f32 {
+        let pose = self.app.world_mut().query_filtered::<&Pose, With<Shown>>().single(self.app.world()).unwrap().clone();
+        let film = &self.sandbox().snapshot.film;
+        let lambda = |state: &Arc<Vec<glam::Vec3A>>| {
+            film.iter().find(|key| Arc::ptr_eq(&key.positions, state)).expect("a state of the film").lambda
+        };
+        lambda(&pose.from) + pose.blend * (lambda(&pose.to) - lambda(&pose.from))
+    }
+}
+
+/// The middle of the view, where the hand is.
+const MIDDLE: [f32; 2] = [640.0, 360.0];
+
+fn paint(stage: &mut Stage) {
+    stage.key("b");
+    stage.drag(MouseButton::Left, MIDDLE, [660.0, 360.0]);
+}
+
+#[test]
+fn a_stroke_changes_importance_under_the_pointer_and_undo_restores_the_bits() {
+    let mut stage = Stage::hand();
+    let before = stage.bits();
+    paint(&mut stage);
+    let after = stage.bits();
+    let sandbox = stage.sandbox();
+    let open = sandbox.open.as_ref().unwrap();
+    assert_eq!(open.painting.edits().len(), 1, "{:?}", sandbox.problem);
+    let homunculus::paint::Edit::Stroke { dabs, .. } = &open.painting.edits()[0] else { panic!("a stroke") };
+    let boundary = &open.painting.under().boundary;
+    let changed: Vec<usize> = (0..before.len()).filter(|&v| before[v] != after[v]).collect();
+    assert!(changed.len() > 10);
+    let is_near = |v: &usize| dabs.iter().any(|dab| DVec3::from_array(dab.centre).distance(boundary.positions[*v]) < dab.radius);
+    assert!(changed.iter().all(is_near), "nothing else changes");
+    stage.control("z", false);
+    assert_eq!(stage.bits(), before);
+    stage.control("z", true);
+    assert_eq!(stage.bits(), after);
+    stage.control("z", false);
+    stage.control("y", false);
+    assert_eq!(stage.bits(), after);
+}
+
+#[test]
+fn sabotage_a_pointer_on_a_panel_paints_nothing() {
+    let mut stage = Stage::hand();
+    let before = stage.bits();
+    stage.app.insert_resource(PointerOnPanel(true));
+    paint(&mut stage);
+    assert_eq!(stage.bits(), before);
+    stage.app.insert_resource(PointerOnPanel(false));
+    paint(&mut stage);
+    assert_ne!(stage.bits(), before);
+}
+
+#[test]
+fn escape_drops_the_stroke_and_a_drag_beside_the_surface_turns_the_view() {
+    let mut stage = Stage::hand();
+    let before = stage.bits();
+    stage.key("b");
+    stage.move_to(MIDDLE[0], MIDDLE[1]);
+    stage.button(MouseButton::Left, ButtonState::Pressed);
+    assert_ne!(stage.bits(), before);
+    stage.press(Key::Escape);
+    stage.move_to(650.0, 370.0);
+    stage.button(MouseButton::Left, ButtonState::Released);
+    assert_eq!(stage.bits(), before);
+    let orbit = stage.orbit();
+    stage.drag(MouseButton::Left, [8.0, 8.0], [60.0, 8.0]);
+    assert_ne!(stage.orbit().yaw, orbit.yaw);
+    assert_eq!(stage.bits(), before);
+}
+
+#[test]
+fn painting_reaches_the_solver_and_ends_certified() {
+    let mut stage = Stage::hand();
+    stage.solved();
+    let linear = stage.sandbox().snapshot.linear.clone().unwrap();
+    paint(&mut stage);
+    stage.wait("the linear solution", |s| !Arc::ptr_eq(s.snapshot.linear.as_ref().unwrap(), &linear));
+    assert!(stage.sandbox().snapshot.dab_milliseconds.is_some());
+    stage.solved();
+    assert!(stage.sandbox().snapshot.outcome.as_ref().unwrap().certificate.certified());
+}
+
+#[test]
+fn the_pointer_turns_moves_and_zooms() {
+    let mut stage = Stage::hand();
+    let start = stage.orbit();
+    stage.drag(MouseButton::Left, MIDDLE, [700.0, 330.0]);
+    let turned = stage.orbit();
+    assert!(turned.yaw != start.yaw && turned.pitch != start.pitch && turned.target == start.target);
+    stage.drag(MouseButton::Middle, MIDDLE, [700.0, 330.0]);
+    let moved = stage.orbit();
+    assert!(moved.target != turned.target && moved.yaw == turned.yaw);
+    stage.wheel(2.0);
+    assert!(stage.orbit().distance < moved.distance);
+    stage.key("b");
+    let before = stage.orbit();
+    stage.drag(MouseButton::Right, MIDDLE, [700.0, 360.0]);
+    assert_ne!(stage.orbit().yaw, before.yaw, "the right button turns while painting");
+}
+
+#[test]
+fn each_key_does_what_the_help_says() {
+    let mut stage = Stage::hand();
+    stage.solved();
+    stage.key("f");
+    let framed = stage.orbit();
+    stage.wheel(5.0);
+    stage.key("f");
+    assert_eq!(stage.orbit().distance, framed.distance);
+    let angle = |orbit: Orbit| (orbit.yaw.to_degrees().round() as i32, orbit.pitch.to_degrees().round() as i32);
+    for (key, plain, other) in [("1", (0, 0), (180, 0)), ("3", (90, 0), (-90, 0)), ("7", (0, 90), (0, -90))] {
+        stage.key(key);
+        assert_eq!(angle(stage.orbit()), plain, "{key}");
+        stage.control(key, false);
+        assert_eq!(angle(stage.orbit()), other, "Ctrl {key}");
+    }
+    let yaw = stage.orbit().yaw;
+    stage.key("t");
+    stage.app.update();
+    assert!(stage.sandbox().choice.turntable && stage.orbit().yaw != yaw);
+    stage.key("t");
+    assert!(!stage.sandbox().choice.turntable);
+    for (key, tool) in [("b", Tool::Paint), ("g", Tool::Fill), ("v", Tool::Orbit)] {
+        stage.key(key);
+        assert_eq!(stage.sandbox().choice.tool, tool);
+    }
+    let size = stage.sandbox().choice.brush_size;
+    stage.key("]");
+    assert!(stage.sandbox().choice.brush_size > size);
+    stage.key("[");
+    assert!((stage.sandbox().choice.brush_size - size).abs() < 1e-6);
+    stage.key("?");
+    assert!(stage.sandbox().choice.help);
+    stage.press(Key::Escape);
+    assert!(!stage.sandbox().choice.help);
+    stage.press(Key::F1);
+    assert!(stage.sandbox().choice.help);
+    stage.press(Key::F1);
+    stage.press(Key::F12);
+    assert_eq!(stage.sandbox().screenshots.len(), 1);
+}
+
+#[test]
+fn the_film_plays_and_scrubs() {
+    let mut stage = Stage::hand();
+    stage.solved();
+    for lambda in [0.0, 0.1, 0.25, 0.6, 0.99] {
+        stage.sandbox().choice.player.scrub(lambda);
+        stage.app.update();
+        assert!((stage.shown_lambda() - lambda).abs() < 1e-4, "{lambda}: {}", stage.shown_lambda());
+    }
+    stage.press(Key::Home);
+    assert_eq!(stage.shown_lambda(), 0.0);
+    stage.press(Key::ArrowRight);
+    let first = stage.shown_lambda();
+    assert!(stage.sandbox().snapshot.film.iter().any(|state| (state.lambda - first).abs() < 1e-4) && first > 0.0);
+    stage.press(Key::ArrowLeft);
+    assert!(stage.shown_lambda() < first);
+    stage.press(Key::Space);
+    assert!(stage.sandbox().choice.player.is_playing);
+    let mut before = stage.shown_lambda();
+    for _ in 0..10 {
+        stage.app.update();
+        let now = stage.shown_lambda();
+        assert!(now >= before);
+        before = now;
+    }
+    stage.press(Key::Space);
+    assert!(!stage.sandbox().choice.player.is_playing && before > 0.0);
+    stage.press(Key::End);
+    assert_eq!(stage.sandbox().choice.player.lambda(), 1.0);
+}
+
+#[test]
+fn what_is_saved_comes_back() {
+    let mut stage = Stage::hand();
+    paint(&mut stage);
+    stage.wish(Wish::SetFidelity(0.3));
+    let path = stage.path("painted.ron");
+    assert!(stage.sandbox().open.as_ref().unwrap().is_changed());
+    stage.wish(Wish::SaveTo(path.clone()));
+    stage.calm();
+    assert!(!stage.sandbox().open.as_ref().unwrap().is_changed());
+    let (scene, bits) = (stage.sandbox().open.as_ref().unwrap().scene().unwrap(), stage.bits());
+    stage.wish(Wish::Open(Source::Gallery("hand".into())));
+    stage.wait("the hand", |s| s.open.as_ref().is_some_and(|open| open.file.is_none()));
+    assert_ne!(stage.bits(), bits);
+    stage.wish(Wish::OpenPath(path.clone()));
+    stage.wait("the saved scene", |s| s.open.as_ref().is_some_and(|open| open.file.is_some()));
+    assert_eq!(stage.bits(), bits);
+    assert_eq!(stage.sandbox().open.as_ref().unwrap().scene().unwrap(), scene);
+    assert_eq!(stage.sandbox().memory.recent().first().map(PathBuf::as_path), Some(path.as_path()));
+}
+
+#[test]
+fn a_file_that_cannot_be_read_leaves_what_was_open() {
+    let mut stage = Stage::hand();
+    let broken = stage.path("broken.obj");
+    std::fs::write(&broken, "v 0 0 0\nf 1 2 3\n").unwrap();
+    let bits = stage.bits();
+    stage.app.world_mut().write_message(FileDragAndDrop::DroppedFile { window: stage.window, path_buf: broken });
+    stage.app.update();
+    stage.wait("the sentence", |s| s.problem.is_some());
+    let problem = stage.sandbox().problem.clone().unwrap();
+    assert!(problem.contains("broken.obj") && !problem.contains('\n'), "{problem}");
+    assert_eq!(stage.bits(), bits);
+    stage.wish(Wish::Dismiss);
+    assert!(stage.sandbox().problem.is_none());
+    stage.wish(Wish::OpenPath(stage.path("nothing.xyz")));
+    stage.wait("the sentence", |s| s.problem.is_some());
+}
+
+#[test]
+fn layers_come_go_and_are_undone() {
+    let mut stage = Stage::hand();
+    let before = stage.bits();
+    let table = stage.path("v.csv");
+    std::fs::write(&table, "vertex,importance\n0,3\n1,3\n").unwrap();
+    stage.wish(Wish::OpenPath(table));
+    stage.calm();
+    let with_layer = stage.bits();
+    assert_ne!(with_layer, before, "{:?}", stage.sandbox().problem);
+    assert!((f64::from_bits(with_layer[0]) - 3f64.ln()).abs() < 1e-6);
+    stage.wish(Wish::ShowLayer(0, false));
+    stage.calm();
+    assert_eq!(stage.bits(), before);
+    stage.wish(Wish::ShowLayer(0, true));
+    stage.calm();
+    assert_eq!(stage.bits(), with_layer);
+    stage.wish(Wish::RemoveLayer(0));
+    stage.calm();
+    assert_eq!(stage.bits(), before);
+    for expected in [&with_layer, &before, &with_layer, &before] {
+        stage.control("z", false);
+        assert_eq!(stage.bits(), *expected);
+    }
+}
+
+#[test]
+fn everything_the_command_line_writes_can_be_exported() {
+    let mut stage = Stage::hand();
+    stage.solved();
+    let files = [
+        (Asked::ExportMesh, "out.obj"),
+        (Asked::ExportMesh, "out.glb"),
+        (Asked::ExportGrowth, "growth.glb"),
+        (Asked::ExportReport, "report.json"),
+    ];
+    for (asked, name) in files {
+        let path = stage.path(name);
+        stage.wish(Wish::Export(asked, path.clone()));
+        stage.calm();
+        assert!(path.is_file(), "{name}: {:?}", stage.sandbox().problem);
+    }
+    let report = std::fs::read_to_string(stage.path("report.json")).unwrap();
+    assert!(report.contains("\"certified\": true"), "{report}");
+}
+
+#[test]
+fn unsaved_work_is_there_after_a_crash() {
+    let mut stage = Stage::hand();
+    paint(&mut stage);
+    let bits = stage.bits();
+    stage.sandbox().autosave();
+    stage.wait("the copy", |s| !s.awaits() || s.memory.autosave().is_some_and(|path| path.is_file()));
+    stage.wait("the copy", |s| s.memory.autosave().is_some_and(|path| path.is_file()));
+    // The program ends here without a word; another one starts.
+    let mut next = Sandbox::new(Some(stage.path("memory"))).unwrap();
+    assert!(next.memory.can_restore());
+    next.wishes.push(Wish::Restore);
+    let start = Instant::now();
+    while next.open.is_none() {
+        next.update();
+        assert!(start.elapsed() < PATIENCE, "{:?}", next.problem);
+    }
+    let open = next.open.as_ref().unwrap();
+    assert_eq!(open.painting.ln().iter().map(|ln| ln.to_bits()).collect::<Vec<_>>(), bits);
+    assert!(open.is_changed() && open.file.is_none());
+}
+
+#[test]
+fn the_classic_solution_stands_beside() {
+    let mut stage = Stage::hand();
+    stage.sandbox().choice.compare = Compare::SideBySide;
+    stage.app.update();
+    stage.app.update();
+    let count = stage.app.world_mut().query::<&homunculus::view::Body>().iter(stage.app.world()).count();
+    assert_eq!(count, 2);
+    stage.sandbox().choice.compare = Compare::Off;
+    stage.app.update();
+    stage.app.update();
+    let count = stage.app.world_mut().query::<&homunculus::view::Body>().iter(stage.app.world()).count();
+    assert_eq!(count, 1);
+}
