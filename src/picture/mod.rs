@@ -9,7 +9,9 @@
 //! | [`importance`] | 3.2 | f per pixel, from discs, colour maps and regions with values |
 //! | [`areas()`] | – | asked and achieved area of each region |
 //! | [`render`] | 3.5 | the inverse map, filtered: the warped picture |
+//! | [`animate`] | – | growth as APNG or GIF |
 
+pub mod animate;
 mod areas;
 mod cut;
 pub mod importance;
