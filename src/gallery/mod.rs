@@ -6,6 +6,7 @@
 pub mod baked;
 pub mod human;
 pub mod implicit;
+pub mod picture;
 
 use std::sync::OnceLock;
 

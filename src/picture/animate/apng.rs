@@ -28,6 +28,7 @@ pub fn apng(out: impl Write, count: u32, frames: impl IntoIterator<Item = io::Re
     let mut writer = encoder.write_header()?;
     writer.write_image_data(first.pixels.as_raw())?;
     let mut before = first.pixels;
+    let mut written = 1;
     for frame in frames {
         let frame = frame?;
         check_size(size, &frame.pixels)?;
@@ -38,8 +39,11 @@ pub fn apng(out: impl Write, count: u32, frames: impl IntoIterator<Item = io::Re
         writer.set_frame_delay(clock.next(frame.delay), 1000)?;
         writer.write_image_data(frame.pixels.view(left, top, width, height).to_image().as_raw())?;
         before = frame.pixels;
+        written += 1;
     }
-    // Refuses when frames are missing.
     writer.finish()?;
-    Ok(())
+    if written == count {
+        return Ok(());
+    }
+    Err(io::Error::other(format!("an animation of {count} frames has {written}")))
 }

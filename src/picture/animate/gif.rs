@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use gif::{DisposalMethod, Encoder, Repeat};
-use image::{GenericImageView as _, RgbaImage};
+use image::RgbaImage;
 
 use super::palette::{Palette, TRANSPARENT};
 use super::{Clock, Frame, changed, check_size};
@@ -33,7 +33,7 @@ pub fn gif(
         u16::try_from(length)
             .map_err(|_| io::Error::other(format!("a GIF of {length} pixels; it has at most 65535 a side")))
     };
-    let mut palette = Palette::of(samples);
+    let mut palette = Palette::of(samples, 255);
     let mut encoder = Encoder::new(out, side(size.0)?, side(size.1)?, &palette.rgb()).map_err(io::Error::other)?;
     encoder.set_repeat(Repeat::Infinite).map_err(io::Error::other)?;
     let mut clock = Clock::new(100);

@@ -14,6 +14,7 @@ use image::RgbaImage;
 
 pub use apng::apng;
 pub use gif::{SHORTEST_GIF_FRAME, gif};
+pub use palette::Palette;
 
 /// One frame.
 #[derive(Debug, Clone)]

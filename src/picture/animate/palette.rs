@@ -7,7 +7,7 @@ use image::RgbaImage;
 /// Index of the transparent entry.
 pub(super) const TRANSPARENT: u8 = 255;
 
-/// Colours beside the transparent one.
+/// Most colours beside the transparent one.
 const COLOURS: usize = 255;
 
 /// Rounds in which each colour moves to the mean of what it stands for (Lloyd 1982): more change nothing that is seen.
@@ -20,44 +20,51 @@ const WEIGHTS: [f32; 3] = [2.0, 4.0, 1.5];
 const BAYER: [[f32; 4]; 4] =
     [[0.0, 8.0, 2.0, 10.0], [12.0, 4.0, 14.0, 6.0], [3.0, 11.0, 1.0, 9.0], [15.0, 7.0, 13.0, 5.0]];
 
-/// Up to 255 colours.
+/// Up to 255 colours that stand for those of pictures.
 #[derive(Debug)]
-pub(super) struct Palette {
+pub struct Palette {
     colours: Vec<[f32; 3]>,
     /// For each colour met: its nearest entry, the entry on its other side, and how much of that is in it, 0..=1/2.
     known: HashMap<[u8; 3], (u8, u8, f32)>,
 }
 
 impl Palette {
-    /// The samples' colours if they are few enough, else a good choice for them.
-    pub fn of(samples: &[&RgbaImage]) -> Self {
+    /// The samples' colours if they are at most `count` (at most 255), else a good choice for them: median cut by
+    /// variance, refined. Pixels less than half opaque count for nothing.
+    pub fn of(samples: &[&RgbaImage], count: usize) -> Self {
+        let count = count.min(COLOURS);
         let mut counts: BTreeMap<[u8; 3], f32> = BTreeMap::new();
         for pixel in samples.iter().flat_map(|image| image.pixels()).filter(|p| p.0[3] >= 128) {
             *counts.entry([pixel.0[0], pixel.0[1], pixel.0[2]]).or_default() += 1.0;
         }
         let mut colours: Vec<([f32; 3], f32)> = counts.into_iter().map(|(c, n)| (c.map(f32::from), n)).collect();
-        if colours.len() > COLOURS {
+        if colours.len() > count {
             colours = coarse(&colours);
         }
-        let colours = if colours.len() <= COLOURS {
+        let colours = if colours.len() <= count {
             colours.into_iter().map(|(colour, _)| colour).collect()
         } else {
-            refine(&colours, median_cut(&colours))
+            refine(&colours, median_cut(&colours, count))
         };
         Self { colours, known: HashMap::new() }
     }
 
-    /// Red, green and blue of 256 entries.
+    /// Red, green and blue of 256 entries, those beyond the colours black.
     pub fn rgb(&self) -> Vec<u8> {
         let mut table: Vec<u8> = self.colours.iter().flatten().map(|c| c.round() as u8).collect();
         table.resize(256 * 3, 0);
         table
     }
 
+    /// The entry nearest to a colour.
+    pub fn nearest(&self, rgb: [u8; 3]) -> u8 {
+        nearest(&self.colours, rgb.map(f32::from)) as u8
+    }
+
     /// `[height × width]` entries for a rectangle (left, top, width, height) of a frame.
     ///
     /// A colour between two entries is mixed of them in a pattern that stands still, so that nothing swarms.
-    pub fn indices(&mut self, frame: &RgbaImage, (left, top, width, height): (u32, u32, u32, u32)) -> Vec<u8> {
+    pub(super) fn indices(&mut self, frame: &RgbaImage, (left, top, width, height): (u32, u32, u32, u32)) -> Vec<u8> {
         let mut indices = Vec::with_capacity((width * height) as usize);
         for (x, y) in (top..top + height).flat_map(|y| (left..left + width).map(move |x| (x, y))) {
             let [r, g, b, alpha] = frame.get_pixel(x, y).0;
@@ -129,17 +136,20 @@ fn mean(members: &[([f32; 3], f32)]) -> ([f32; 3], f32) {
 }
 
 /// Boxes of colours, cut again and again where most is lost (Heckbert 1982, by variance): their means.
-fn median_cut(colours: &[([f32; 3], f32)]) -> Vec<[f32; 3]> {
+fn median_cut(colours: &[([f32; 3], f32)], count: usize) -> Vec<[f32; 3]> {
     let loss = |members: &[([f32; 3], f32)]| -> [f32; 3] {
         let (centre, _) = mean(members);
         std::array::from_fn(|c| members.iter().map(|m| WEIGHTS[c] * m.1 * (m.0[c] - centre[c]).powi(2)).sum())
     };
     let mut boxes = vec![(loss(colours), colours.to_vec())];
-    while boxes.len() < COLOURS {
+    while boxes.len() < count {
         let total = |loss: [f32; 3]| loss.iter().sum::<f32>();
         let Some(worst) = (0..boxes.len()).max_by(|&a, &b| total(boxes[a].0).total_cmp(&total(boxes[b].0))) else {
             break;
         };
+        if boxes[worst].1.len() < 2 {
+            break;
+        }
         let (lost, mut members) = boxes.swap_remove(worst);
         let axis = (0..3).max_by(|&a, &b| lost[a].total_cmp(&lost[b])).unwrap_or(0);
         let (centre, _) = mean(&members);

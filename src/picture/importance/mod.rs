@@ -18,8 +18,6 @@ use crate::importance::admission::Admission;
 use crate::importance::{IMAGE_RANGE, Range, falloff};
 use crate::{Error, Result};
 
-pub use regions::Values;
-
 /// One statement about importance. Layers apply in the order given, each over what is below it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -10,7 +10,7 @@ use crate::{Error, Result};
 
 /// What a table's numbers mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Values {
+enum Values {
     /// Importance as it stands.
     Importance,
     /// A quantity that shall become area.
