@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::diagnostics::human_bytes;
 use crate::export;
+use crate::gallery;
 use crate::importance::Layer;
 use crate::paint::Edit;
 use crate::{Error, Result};
@@ -65,7 +66,7 @@ impl Source {
             Self::File(path) => path
                 .extension()
                 .is_some_and(|extension| PICTURE_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known))),
-            Self::Gallery(_) => false,
+            Self::Gallery(name) => gallery::picture::list().any(|entry| entry.name == name),
         }
     }
 }

@@ -25,7 +25,9 @@ use crate::{
         Growth, Shell,
         areas::{AreaCorrection, Areas},
         grow,
-        plugin::{BoundaryAtRisk, CollisionPlugin, CollisionProblem, Growing, Holds, Leap, Rotations, Shells, Sizes, Warped},
+        plugin::{
+            BoundaryAtRisk, CollisionPlugin, CollisionProblem, Growing, Holds, Leap, Rotations, Shells, Sizes, Warped,
+        },
     },
     diagnostics::Stopwatch,
     edge::plugin::{EdgePlugin, LinearSolution},

@@ -101,7 +101,7 @@ fn importance_keeps_its_order() {
     let expected = [
         Layer::Values { path: "a.csv".into() },
         Layer::Sphere { centre: [-1.0, -2.5, 0.3], radius: 0.5, value: 2.0 },
-        Layer::Regions { regions: "r.csv".into(), values: "b.csv".into() },
+        Layer::Regions { regions: "r.csv".into(), values: "b.csv".into(), per_area: false },
         heat(Some((0.5, 3.0))),
         Layer::Image { path: "../m.png".into(), range: Some((1.0, 2.0)) },
         Layer::Sphere { centre: [0.0; 3], radius: 1.0, value: 0.5 },

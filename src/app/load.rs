@@ -7,6 +7,7 @@ use super::scene_options::SceneOptions;
 use super::{cancel, note};
 use crate::boundary::{self, Attribute, Boundary, Regions};
 use crate::gallery::human::read_values;
+use crate::gallery::picture::PictureScene;
 use crate::importance::{Layer, Stack};
 use crate::picture::importance::Field;
 use crate::picture::{self, Cut, Picture};
@@ -55,9 +56,23 @@ pub(super) struct LoadedPicture {
     pub warnings: Vec<String>,
 }
 
-/// The bytes of a scene's source if they are a picture's.
-pub(super) fn picture_bytes(scene: &Scene) -> Result<Option<Vec<u8>>> {
-    let Source::File(path) = &scene.source else { return Ok(None) };
+/// A picture that is not read yet.
+pub(super) enum PictureSource {
+    /// A file's bytes.
+    Bytes(Vec<u8>),
+    /// A built-in one.
+    BuiltIn(Box<PictureScene>),
+}
+
+/// The picture a scene's source is, if it is one.
+pub(super) fn picture_source(scene: &Scene) -> Result<Option<PictureSource>> {
+    let path = match &scene.source {
+        Source::File(path) => path,
+        Source::Gallery(name) if scene.source.is_picture() => {
+            return gallery::picture::open(name).map(|scene| Some(PictureSource::BuiltIn(Box::new(scene))));
+        }
+        Source::Gallery(_) => return Ok(None),
+    };
     let mut start = Vec::new();
     let file = std::fs::File::open(path).and_then(|file| match file.metadata()?.is_file() {
         true => Ok(file),
@@ -68,24 +83,33 @@ pub(super) fn picture_bytes(scene: &Scene) -> Result<Option<Vec<u8>>> {
     if file.take(MAGIC_BYTES).read_to_end(&mut start).is_err() || !picture::is_picture(&start) {
         return Ok(None);
     }
-    std::fs::read(path).map(Some).map_err(|e| Error::reading(path, e))
+    std::fs::read(path).map(|bytes| Some(PictureSource::Bytes(bytes))).map_err(|e| Error::reading(path, e))
 }
 
 /// By so many bytes a picture is recognised.
 const MAGIC_BYTES: u64 = 64;
 
 /// Reads what a scene of a picture names; as [`load`].
-pub(super) fn load_picture(scene: &Scene, options: &SceneOptions, bytes: &[u8]) -> Result<LoadedPicture> {
+pub(super) fn load_picture(scene: &Scene, options: &SceneOptions, source: PictureSource) -> Result<LoadedPicture> {
     begin(options)?;
     let background = scene.background.as_deref().map(str::parse).transpose();
     let background = background.map_err(|sentence: String| Error::input(format!("--background: {sentence}")))?;
     let name = scene.source.to_string();
-    let picture = picture::read_bytes(&name, bytes, &Cut { background, ..Cut::default() })?;
+    let (picture, own) = match source {
+        PictureSource::Bytes(bytes) => {
+            (picture::read_bytes(&name, &bytes, &Cut { background, ..Cut::default() })?, None)
+        }
+        PictureSource::BuiltIn(built_in) => (built_in.picture, Some(built_in.field)),
+    };
     let layers = scene.shown_layers().iter().map(picture_layer).collect::<Result<Vec<_>>>()?;
-    let field = Field::load(&layers, scene.base, scene.clamp, &picture, Path::new(""))?;
+    // Importance that is given takes the place of a built-in picture's own.
+    let (field, is_own) = match own.filter(|_| layers.is_empty()) {
+        Some(field) => (field, true),
+        None => (Field::load(&layers, scene.base, scene.clamp, &picture, Path::new(""))?, false),
+    };
     let mut warnings = picture.warnings.clone();
     warnings.extend_from_slice(&field.warnings);
-    if layers.is_empty() {
+    if layers.is_empty() && !is_own {
         warnings.push("no importance was given, so the picture stays as it is; see --sphere and --regions".into());
     }
     tell(&warnings, options);

@@ -179,7 +179,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Resu
         #[cfg(feature = "window")]
         None => Order::Play(PlayOptions::default()),
         #[cfg(not(feature = "window"))]
-        None => return Err(CommandLine::command().error(clap::error::ErrorKind::MissingSubcommand, "a command is missing")),
+        None => {
+            return Err(CommandLine::command().error(clap::error::ErrorKind::MissingSubcommand, "a command is missing"));
+        }
         #[cfg(feature = "window")]
         Some(Face::Play(options)) => Order::Play(options),
         Some(Face::Inspect(options)) => Order::Inspect(options),

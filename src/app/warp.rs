@@ -18,9 +18,9 @@ use crate::{Error, Result};
 pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     let options = &order.options;
     let scene = order.scene()?;
-    if let Some(bytes) = load::picture_bytes(&scene)? {
+    if let Some(source) = load::picture_source(&scene)? {
         let outputs = Outputs::of(options, &scene, true)?;
-        let loaded = load::load_picture(&scene, &options.scene, &bytes)?;
+        let loaded = load::load_picture(&scene, &options.scene, source)?;
         return flat::run(options, &scene, &outputs, loaded);
     }
     if options.scale.is_some() || scene.background.is_some() {

@@ -266,7 +266,8 @@ impl Stack {
                 if total > 0.0 { place.corners.iter().map(corner).sum::<f64>() / total } else { below }
             }
             Ready::Painted(differences) => {
-                let corner = |(vertex, weight): &(usize, f64)| weight * differences.get(*vertex).copied().unwrap_or(0.0);
+                let corner =
+                    |(vertex, weight): &(usize, f64)| weight * differences.get(*vertex).copied().unwrap_or(0.0);
                 let total: f64 = place.corners.iter().map(|(_, weight)| weight).sum();
                 if total > 0.0 { below + place.corners.iter().map(corner).sum::<f64>() / total } else { below }
             }
