@@ -184,7 +184,7 @@ pub(super) fn run(order: RecordOrder) -> Result<Verdict> {
     let solved = schedule::solve(&boundary, &stack, &how, &watcher);
     watcher.finish();
     let (mut subject, outcome) = Subject::new(Arc::new(boundary), solved?);
-    let report = Report::of(&scene, &how, &stack, &outcome, warnings);
+    let report = Report::of(&scene, &how, stack.clamped(), &outcome, warnings);
 
     let watcher = progress::watcher(quiet);
     let take = record::shoot(&mut subject, &settings, &options.output, &watcher, |_| {});

@@ -183,7 +183,7 @@ fn describe(layer: &Layer) -> (String, String) {
             (format!("attribute {name}"), range)
         }
         Layer::Values { path } => (format!("values {}", file(path)), path.display().to_string()),
-        Layer::Regions { regions, values } => {
+        Layer::Regions { regions, values, .. } => {
             (format!("regions {}", file(values)), format!("{}\n{}", regions.display(), values.display()))
         }
         Layer::Image { path, .. } => (format!("picture {}", file(path)), path.display().to_string()),

@@ -48,13 +48,13 @@ const FITTED: usize = 4000;
 impl Subject {
     /// Takes a solved domain; what came of it is handed back.
     pub fn new(boundary: Arc<Boundary>, solved: Solved) -> (Self, Outcome) {
-        let Solved { complex, binding, shells, film, linear, importance, outcome } = solved;
+        let Solved { complex, binding, shells, film, linear, importance, outcome, .. } = solved;
         let keyframe = |k: &crate::film::Keyframe| (k.lambda, Arc::new(k.positions.clone()), k.certificate.clone());
         let subject = Self {
             boundary,
             rest: Arc::new(complex.rest.clone()),
-            complex: Arc::new(complex),
-            binding: Arc::new(binding),
+            complex,
+            binding,
             shells,
             keyframes: film.keyframes().iter().map(keyframe).collect(),
             linear: Arc::new(linear),

@@ -190,7 +190,7 @@ impl Sandbox {
             (Asked::Values, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Values { path: path.clone() })),
             (Asked::Image, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Image { path: path.clone(), range: None })),
             (Asked::Regions, [regions, values, ..]) => {
-                self.fulfil(Wish::AddLayer(Layer::Regions { regions: regions.clone(), values: values.clone() }))
+                self.fulfil(Wish::AddLayer(Layer::Regions { regions: regions.clone(), values: values.clone(), per_area: false }))
             }
             (Asked::Regions, [_]) => Ok(()),
             (Asked::SaveScene, [path, ..]) => self.fulfil(Wish::SaveTo(path.clone())),
