@@ -17,21 +17,21 @@ fn film(count: u32, delay: Duration) -> Vec<animate::Frame> {
 
 /// Draws the frames of an APNG one over the other, as a viewer would; with the seconds shown.
 fn play_apng(bytes: &[u8]) -> (Vec<RgbaImage>, f64) {
-    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();
-    let count = reader.info().animation_control().unwrap().num_frames;
+    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("a header");
+    let count = reader.info().animation_control().expect("animated").num_frames;
     let mut canvas = RgbaImage::new(reader.info().width, reader.info().height);
     let (mut frames, mut seconds) = (Vec::new(), 0.0);
     for _ in 0..count {
-        let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut buffer).unwrap();
-        let control = *reader.info().frame_control().unwrap();
+        let mut buffer = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut buffer).expect("a frame");
+        let control = *reader.info().frame_control().expect("animated");
         seconds += f64::from(control.delay_num) / f64::from(control.delay_den);
         let part = RgbaImage::from_raw(
             control.width,
             control.height,
             buffer[..(control.width * control.height * 4) as usize].to_vec(),
         )
-        .unwrap();
+        .expect("as many bytes as pixels");
         image::imageops::replace(&mut canvas, &part, control.x_offset.into(), control.y_offset.into());
         frames.push(canvas.clone());
     }
@@ -83,10 +83,10 @@ fn gif_plays_its_frames_in_few_colours() {
 fn play_gif(bytes: &[u8]) -> (Vec<RgbaImage>, f64) {
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::RGBA);
-    let mut reader = options.read_info(bytes).unwrap();
+    let mut reader = options.read_info(bytes).expect("a header");
     let mut canvas = RgbaImage::new(reader.width().into(), reader.height().into());
     let (mut frames, mut seconds) = (Vec::new(), 0.0);
-    while let Some(frame) = reader.read_next_frame().unwrap() {
+    while let Some(frame) = reader.read_next_frame().expect("a frame") {
         seconds += f64::from(frame.delay) / 100.0;
         let (left, top) = (u32::from(frame.left), u32::from(frame.top));
         for (i, pixel) in frame.buffer.chunks_exact(4).enumerate().filter(|(_, p)| p[3] > 0) {

@@ -31,6 +31,21 @@ fn layers_apply_in_order() {
 }
 
 #[test]
+fn discs_are_written_with_or_without_a_third_coordinate() {
+    let disc = Layer::Disc { centre: [3.0, -4.5], radius: 2.0, value: 1.5 };
+    assert_eq!(Layer::disc("3, -4.5,2,1.5").as_ref(), Ok(&disc));
+    assert_eq!(Layer::disc("3,-4.5,99,2,1.5").as_ref(), Ok(&disc));
+    for (text, problem) in [("3,4,2", "there are 3"), ("1,2,3,4,5,6", "there are 6"), ("a,b,c,d", "`a`"), ("", "``")] {
+        assert!(Layer::disc(text).unwrap_err().contains(problem), "{text}");
+    }
+    let picture = picture_of(colourful(40, 30));
+    for text in ["3,4,-2,1.5", "3,4,2,0", "NaN,4,2,2", "3,4,inf,2"] {
+        let layer = Layer::disc(text).unwrap();
+        assert!(sentence(Field::load(&[layer], 1.0, false, &picture, std::path::Path::new(""))).contains("disc"));
+    }
+}
+
+#[test]
 fn maps_are_read_back_along_their_colours() {
     let picture = picture_of(colourful(128, 8));
     let load = |map: RgbaImage| {

@@ -1,5 +1,6 @@
 //! The contract of pictures around the method: what is read, what is refused and how, what importance a pixel gets, and that
 //! what is drawn is the picture: nothing moved, cracked, fringed or lost.
+#![allow(clippy::print_stdout, reason = "skipping is said aloud")]
 
 mod animation;
 mod drawing;
@@ -14,14 +15,14 @@ use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgba, RgbaImage};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 /// A picture that changes everywhere, opaque.
-pub fn colourful(width: u32, height: u32) -> RgbaImage {
+fn colourful(width: u32, height: u32) -> RgbaImage {
     RgbaImage::from_fn(width, height, |x, y| {
         Rgba([(x * 7 % 256) as u8, (y * 5 % 256) as u8, ((x * x + 3 * y) % 256) as u8, 255])
     })
 }
 
 /// A disc with a smoothed edge; `outside` is the colour under what is transparent.
-pub fn disc(size: u32, radius: f64, inside: [u8; 3], outside: [u8; 3]) -> RgbaImage {
+fn disc(size: u32, radius: f64, inside: [u8; 3], outside: [u8; 3]) -> RgbaImage {
     let centre = DVec2::splat(f64::from(size) / 2.0);
     RgbaImage::from_fn(size, size, |x, y| {
         let distance = (dvec2(f64::from(x), f64::from(y)) + 0.5).distance(centre);
@@ -31,22 +32,22 @@ pub fn disc(size: u32, radius: f64, inside: [u8; 3], outside: [u8; 3]) -> RgbaIm
     })
 }
 
-pub fn encoded(image: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
+fn encoded(image: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    image.into().write_to(&mut bytes, format).unwrap();
+    image.into().write_to(&mut bytes, format).expect("encoded");
     bytes.into_inner()
 }
 
-pub fn png_bytes(image: impl Into<DynamicImage>) -> Vec<u8> {
+fn png_bytes(image: impl Into<DynamicImage>) -> Vec<u8> {
     encoded(image, ImageFormat::Png)
 }
 
-pub fn picture_of(image: RgbaImage) -> Picture {
-    read_bytes("test.png", &png_bytes(image), &Cut::default()).unwrap()
+fn picture_of(image: RgbaImage) -> Picture {
+    read_bytes("test.png", &png_bytes(image), &Cut::default()).expect("a picture")
 }
 
 /// The cells of side `cell` that overlap the domain, two triangles each.
-pub fn mesh_of(picture: &Picture, cell: f64) -> FlatMesh {
+fn mesh_of(picture: &Picture, cell: f64) -> FlatMesh {
     let size = picture.size.as_dvec2();
     let (columns, rows) = ((size.x / cell).ceil() as usize, (size.y / cell).ceil() as usize);
     let mut vertices = vec![u32::MAX; (columns + 1) * (rows + 1)];
@@ -74,7 +75,7 @@ pub fn mesh_of(picture: &Picture, cell: f64) -> FlatMesh {
 }
 
 /// Grows around the middle and waves: smooth, nowhere folded.
-pub fn waved(mesh: &FlatMesh, size: UVec2) -> Vec<DVec2> {
+fn waved(mesh: &FlatMesh, size: UVec2) -> Vec<DVec2> {
     let centre = size.as_dvec2() / 2.0;
     let place = |p: &DVec2| {
         let from = *p - centre;
@@ -85,7 +86,7 @@ pub fn waved(mesh: &FlatMesh, size: UVec2) -> Vec<DVec2> {
 }
 
 /// Greatest difference of two pictures, levels of 255, of what is seen: the colour of the transparent is nobody's.
-pub fn difference(a: &Pixels, b: &Pixels) -> f64 {
+fn difference(a: &Pixels, b: &Pixels) -> f64 {
     assert_eq!(a.size(), b.size());
     let seen = |rgba: [u16; 4]| {
         let [r, g, b, alpha] = rgba.map(f64::from);
@@ -95,13 +96,13 @@ pub fn difference(a: &Pixels, b: &Pixels) -> f64 {
     (0..count).flat_map(|i| seen(a.wide(i)).zip(seen(b.wide(i)))).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-pub fn sentence(result: homunculus::Result<impl Sized>) -> String {
+fn sentence(result: homunculus::Result<impl Sized>) -> String {
     let sentence = result.err().expect("refused").to_string();
     assert!(!sentence.contains('\n') && !sentence.is_empty(), "{sentence}");
     sentence
 }
 
-pub fn shared(file: &str) -> Option<PathBuf> {
+fn shared(file: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(file);
     if !path.exists() {
         println!("skipped: no {} beside the checkout", path.display());
@@ -111,22 +112,22 @@ pub fn shared(file: &str) -> Option<PathBuf> {
 }
 
 /// Files in a folder that goes with them.
-pub struct Files(pub tempfile::TempDir);
+struct Files(tempfile::TempDir);
 
 impl Files {
-    pub fn new(files: &[(&str, Vec<u8>)]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
+    fn new(files: &[(&str, Vec<u8>)]) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).expect("written"));
         Self(folder)
     }
 
-    pub fn load(&self, layers: &[Layer], picture: &Picture) -> homunculus::Result<Field> {
+    fn load(&self, layers: &[Layer], picture: &Picture) -> homunculus::Result<Field> {
         Field::load(layers, 1.0, false, picture, self.0.path())
     }
 }
 
 /// Regions 1 (16 columns), 2 (4 columns) and none (20 columns) of 40 × 30.
-pub fn ids() -> GrayImage {
+fn ids() -> GrayImage {
     GrayImage::from_fn(40, 30, |x, _| {
         Luma([if x < 16 {
             1
@@ -138,7 +139,7 @@ pub fn ids() -> GrayImage {
     })
 }
 
-pub fn regions(table: &str, per_area: bool) -> homunculus::Result<Field> {
+fn regions(table: &str, per_area: bool) -> homunculus::Result<Field> {
     let files = Files::new(&[("id.png", png_bytes(ids())), ("v.csv", table.into())]);
     let layer = Layer::Regions { ids: "id.png".into(), values: "v.csv".into(), per_area };
     files.load(&[layer], &picture_of(colourful(40, 30)))

@@ -36,7 +36,7 @@ fn palette_png() -> Vec<u8> {
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_palette(vec![255, 0, 0, 9, 9, 9, 0, 0, 255]);
     encoder.set_trns(vec![255, 0, 127]);
-    encoder.write_header().unwrap().write_image_data(&[0, 1, 2, 0, 0, 0]).unwrap();
+    encoder.write_header().and_then(|mut writer| writer.write_image_data(&[0, 1, 2, 0, 0, 0])).expect("encoded");
     bytes
 }
 

@@ -53,6 +53,23 @@ pub enum Layer {
     },
 }
 
+impl Layer {
+    /// A disc as it is written on the command line: `X,Y,RADIUS,F`, or as for bodies `X,Y,Z,RADIUS,F` with Z ignored.
+    ///
+    /// # Errors
+    /// Says how many numbers there are, or which is none.
+    pub fn disc(text: &str) -> Result<Self, String> {
+        let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("`{}` is no number", part.trim()));
+        let numbers = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
+        match numbers[..] {
+            [x, y, radius, value] | [x, y, _, radius, value] => {
+                Ok(Self::Disc { centre: [x, y], radius, value: value as f32 })
+            }
+            _ => Err(format!("four numbers X,Y,RADIUS,F are needed, there are {}", numbers.len())),
+        }
+    }
+}
+
 /// Importance of each pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
