@@ -41,7 +41,7 @@ fn values() -> Layer {
 }
 
 fn regions() -> Layer {
-    Layer::Regions { regions: "r.csv".into(), values: "v.csv".into() }
+    Layer::Regions { regions: "r.csv".into(), values: "v.csv".into(), per_area: false }
 }
 
 fn refusal(layer: Layer, files: &[(&str, &str)], boundary: &Boundary) -> String {

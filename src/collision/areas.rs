@@ -25,7 +25,7 @@ const ROUNDS: u32 = 24;
 const GOOD_ENOUGH: f64 = 0.004;
 
 /// A region's factor stays within this range and its inverse: what cannot be reached is not asked for ever louder.
-const MOST: f64 = 4.0;
+const MOST: f64 = 16.0;
 
 /// Regions smaller than this many cells are not corrected: they have no cell of their own to grow by, and would drive
 /// their neighbours off.

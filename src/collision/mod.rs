@@ -45,6 +45,36 @@ const STEP_LIMIT: f32 = 0.5;
 /// The same in the plane: every committed state is checked whole and needs no way to it, and large parts have to flow far.
 const FLAT_STEP_LIMIT: f32 = 4.0;
 
+/// What the guard keeps from step to step.
+#[derive(Debug, Clone)]
+pub struct Restraint {
+    /// `[nodes]` how often each node's last step was halved.
+    holds: Vec<u8>,
+    /// In the plane, how far steps may go, in cells: less where they fold cells that must then be held, and more again where
+    /// they do not. In space half a cell is what keeps walls from being skipped, and stays.
+    reach: f32,
+}
+
+impl Default for Restraint {
+    fn default() -> Self {
+        Self { holds: Vec::new(), reach: FLAT_STEP_LIMIT }
+    }
+}
+
+impl Restraint {
+    fn reach(&self, dimension: Dimension) -> f32 {
+        match dimension {
+            Dimension::Two => self.reach,
+            Dimension::Three => STEP_LIMIT,
+        }
+    }
+
+    fn adapt(&mut self, guarded: &Guarded) {
+        let factor = if guarded.rounds > 0 { 0.6 } else { 1.25 };
+        self.reach = (self.reach * factor).clamp(0.1 * STEP_LIMIT, FLAT_STEP_LIMIT);
+    }
+}
+
 /// How near pairs are kept for the iterations of a leap, in radii.
 const REACH: f32 = 1.5;
 
@@ -218,7 +248,7 @@ fn remove_rigid_motion(positions: &[Vec3A], step: &mut [Vec3A]) {
     step.par_iter_mut().zip(positions).with_min_len(CHUNK).for_each(|(d, x)| *d -= drift + spin.cross(*x - centre));
 }
 
-/// Guard: takes of the proposed step what stays injective. `holds` is kept from step to step. Returns the new
+/// Guard: takes of the proposed step what stays injective. `restraint` is kept from step to step. Returns the new
 /// positions' largest motion in cells and what was held back.
 pub fn guard_step(
     complex: &Complex,
@@ -226,15 +256,13 @@ pub fn guard_step(
     shells: &mut [Shell],
     positions: &mut Vec<Vec3A>,
     mut proposed: Vec<Vec3A>,
-    holds: &mut Vec<u8>,
+    restraint: &mut Restraint,
 ) -> (f32, Guarded) {
-    let reach = match complex.dimension {
-        Dimension::Two => FLAT_STEP_LIMIT,
-        Dimension::Three => STEP_LIMIT,
-    };
+    let reach = restraint.reach(complex.dimension);
     guard::limit(positions, &mut proposed, |i| reach * asked.radius[i].min(1.0));
     let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
-    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
+    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, &mut restraint.holds);
+    restraint.adapt(&guarded);
     let motion = largest_motion(positions, &proposed);
     *positions = proposed;
     (motion, guarded)

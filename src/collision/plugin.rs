@@ -5,14 +5,14 @@ use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Growth, Guarded, Problem, Shell, areas::AreaCorrection, contact, contact_step, global_step, grow,
+    Asked, Contacts, Growth, Guarded, Problem, Restraint, Shell, areas::AreaCorrection, contact, contact_step, global_step, grow,
     guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
     diagnostics::Stopwatch,
     edge::{CHUNK, plugin::LinearSolution},
     film::blend,
-    importance::plugin::Importance,
+    importance::{plugin::Importance, smoothed},
     schedule::{Domain, Solve, Stage},
     voxel::{
         Dimension,
@@ -72,9 +72,9 @@ pub struct Shells(pub Vec<Shell>);
 #[derive(Component, Debug, Default)]
 pub struct BoundaryAtRisk(pub bool);
 
-/// `[nodes]` how often the guard halved each node's last step.
+/// What the guard keeps from step to step.
 #[derive(Component, Debug, Default)]
-pub struct Holds(pub Vec<u8>);
+pub struct Holds(pub Restraint);
 
 /// What the guard held back in the last iteration.
 #[derive(Component, Debug, Default)]
@@ -110,8 +110,13 @@ fn start(
             let correction = watch.time("grow", || AreaCorrection::new(picture, &domain.boundary));
             commands.entity(entity).insert(correction);
         }
-        let problem =
-            watch.time("grow", || Problem::of_cells(complex, importance.cells.clone(), domain.settings.fidelity));
+        let problem = watch.time("grow", || {
+            let asked = match domain.picture {
+                Some(_) => smoothed(complex, &importance.cells),
+                None => importance.cells.clone(),
+            };
+            Problem::of_cells(complex, asked, domain.settings.fidelity)
+        });
         let growth = Growth::of(complex.dimension, domain.settings.keys, &problem.importance);
         commands.entity(entity).insert((
             CollisionProblem(problem),
@@ -148,7 +153,7 @@ fn correct_areas(mut domains: Query<Corrected>, mut watch: ResMut<Stopwatch>) {
             correction.correct(&shares.0, &domain.boundary, &binding.apply(&warped.0), cell)
         });
         if let Some(importance) = corrected {
-            problem.0.importance = importance;
+            problem.0.importance = smoothed(&lattice.0, &importance);
             sizes.0 = grow(&lattice.0, &problem.0, 1.0);
             growing.0.again();
         }
@@ -295,6 +300,7 @@ fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
         let (motion, guarded) = watch.time("guard", || {
             guard_step(complex, &sizes.0, &mut shells.0[..guarded], &mut warped.0, proposed, &mut holds.0)
         });
+        eprintln!("TRACE {:.4} it {} motion {motion:.3} {guarded:?} risk {}", growing.0.lambda(), growing.0.iteration(), at_risk.0);
         growing.0.iterated(motion);
         if guarded.held_back > 0 || complex.dimension == Dimension::Two {
             growing.0.held_back();

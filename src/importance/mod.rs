@@ -37,7 +37,7 @@ use sphere::Sphere;
 pub use colour::colours;
 pub use layer::{CLAMP_MAX, CLAMP_MIN, IMAGE_RANGE, Layer, Range};
 pub use sphere::falloff;
-pub use spread::{Sampling, Spread, cell_importance, node_importance};
+pub use spread::{Sampling, Spread, cell_importance, node_importance, smoothed};
 
 /// A point on the boundary's surface where importance is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -49,7 +49,10 @@ pub(super) fn write(order: &Order) -> Result<PathBuf> {
                 keys: order.scene.keys,
                 reference: None,
             };
-            report::write(&Report::of(&order.scene, &settings, order.stack.clamped(), outcome, order.warnings.clone()), path)?;
+            report::write(
+                &Report::of(&order.scene, &settings, order.stack.clamped(), outcome, order.warnings.clone()),
+                path,
+            )?;
         }
         _ => return Err(Error::Fault("nothing is written for this dialog".into())),
     }

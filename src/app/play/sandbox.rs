@@ -189,9 +189,11 @@ impl Sandbox {
             (Asked::Open, [path, ..]) => self.fulfil(Wish::OpenPath(path.clone())),
             (Asked::Values, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Values { path: path.clone() })),
             (Asked::Image, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Image { path: path.clone(), range: None })),
-            (Asked::Regions, [regions, values, ..]) => {
-                self.fulfil(Wish::AddLayer(Layer::Regions { regions: regions.clone(), values: values.clone(), per_area: false }))
-            }
+            (Asked::Regions, [regions, values, ..]) => self.fulfil(Wish::AddLayer(Layer::Regions {
+                regions: regions.clone(),
+                values: values.clone(),
+                per_area: false,
+            })),
             (Asked::Regions, [_]) => Ok(()),
             (Asked::SaveScene, [path, ..]) => self.fulfil(Wish::SaveTo(path.clone())),
             (_, [path, ..]) => self.fulfil(Wish::Export(asked, path.clone())),
