@@ -18,7 +18,7 @@ use glam::{Mat3A, Quat, Vec3A};
 use homunculus::{
     certificate::certify,
     collision::{
-        Asked, Contacts, Growth, Problem, Restraint, Shell, contact_step, global_step, grow, guard_step, local_step,
+        Asked, Contacts, Growth, Problem, Shell, contact_step, global_step, grow, guard_step, local_step,
         plugin::{CollisionProblem, Growing, Rotations, Shells, Warped},
     },
     edge::EdgeSolver,
@@ -179,14 +179,14 @@ fn measure_collision(bench: &mut Bench, complex: &Complex, midway: &LazyCell<Mid
         "guard",
         || (state(), LazyCell::force(proposed).clone()),
         |((_, positions, skin), proposed)| {
-            guard_step(complex, &midway.asked, skin, positions, std::mem::take(proposed), &mut Restraint::default())
+            guard_step(complex, &midway.asked, skin, positions, std::mem::take(proposed), &mut Vec::new())
         },
     );
     bench.measure("collision", "iteration", state, |(rotations, positions, skin)| {
         let targets = midway.local(complex, rotations);
         let contacts = midway.contact(complex);
         let proposed = midway.global(complex, &targets, &contacts);
-        guard_step(complex, &midway.asked, skin, positions, proposed, &mut Restraint::default())
+        guard_step(complex, &midway.asked, skin, positions, proposed, &mut Vec::new())
     });
 }
 

@@ -27,6 +27,10 @@ const GOOD_ENOUGH: f64 = 0.004;
 /// A region's factor stays within this range and its inverse: what cannot be reached is not asked for ever louder.
 const MOST: f64 = 16.0;
 
+/// No region asks for more or less than this many times the area at once: a state that is still on its way would be asked
+/// for what it is about to reach anyway.
+const MOST_AT_ONCE: f64 = 1.15;
+
 /// Regions smaller than this many cells are not corrected: they have no cell of their own to grow by, and would drive
 /// their neighbours off.
 const LEAST_CELLS: f64 = 2.0;
@@ -156,7 +160,8 @@ impl AreaCorrection {
         }
         self.rounds += 1;
         for (factor, a) in self.factors.iter_mut().zip(&areas).filter(|(_, a)| is_resolved(a)) {
-            *factor = (f64::from(*factor) * (a.asked / a.achieved)).clamp(1.0 / MOST, MOST) as f32;
+            let change = (a.asked / a.achieved).clamp(1.0 / MOST_AT_ONCE, MOST_AT_ONCE);
+            *factor = (f64::from(*factor) * change).clamp(1.0 / MOST, MOST) as f32;
         }
         Some(shares.sizes(&self.factors))
     }

@@ -153,6 +153,7 @@ pub fn flat_target(corners: [Vec3A; 8], size: f32, fidelity: f32) -> Mat3A {
     let turn = conformal.try_normalize().unwrap_or(Vec2::X);
     let kappa = flat_kappa(conformal.length_squared(), anticonformal.length_squared(), size * size);
     let anticonformal = anticonformal * (FLAT_SHEAR_KEPT / (1.0 + kappa));
+    let anticonformal = anticonformal.clamp_length_max(MOST_SHEAR * size);
     let conformal = turn * (size * size + anticonformal.length_squared()).sqrt();
     let conformal = turn * size * (1.0 - fidelity) + conformal * fidelity;
     let anticonformal = anticonformal * fidelity;
@@ -167,6 +168,10 @@ pub fn flat_target(corners: [Vec3A; 8], size: f32, fidelity: f32) -> Mat3A {
 /// conformal distortion of p95 9.4, at 0.95 of 5.0, at 0.9 of 4.0; below, areas within regions give way (size error p95 6.6,
 /// 7.5 and 9.8 %).
 const FLAT_SHEAR_KEPT: f32 = 0.95;
+
+/// The anticonformal part of a target is at most this many sizes long: a conformal distortion of five, as
+/// `(√5 − 1/√5) / 2`. Cells that are squeezed further push back, before they are so flat that the guard must hold them.
+const MOST_SHEAR: f32 = 0.9;
 
 /// Newton steps for κ, kept within the bracket: more than rounding needs.
 const KAPPA_STEPS: usize = 8;

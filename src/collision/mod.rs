@@ -45,36 +45,6 @@ const STEP_LIMIT: f32 = 0.5;
 /// The same in the plane: every committed state is checked whole and needs no way to it, and large parts have to flow far.
 const FLAT_STEP_LIMIT: f32 = 4.0;
 
-/// What the guard keeps from step to step.
-#[derive(Debug, Clone)]
-pub struct Restraint {
-    /// `[nodes]` how often each node's last step was halved.
-    holds: Vec<u8>,
-    /// In the plane, how far steps may go, in cells: less where they fold cells that must then be held, and more again where
-    /// they do not. In space half a cell is what keeps walls from being skipped, and stays.
-    reach: f32,
-}
-
-impl Default for Restraint {
-    fn default() -> Self {
-        Self { holds: Vec::new(), reach: FLAT_STEP_LIMIT }
-    }
-}
-
-impl Restraint {
-    fn reach(&self, dimension: Dimension) -> f32 {
-        match dimension {
-            Dimension::Two => self.reach,
-            Dimension::Three => STEP_LIMIT,
-        }
-    }
-
-    fn adapt(&mut self, guarded: &Guarded) {
-        let factor = if guarded.rounds > 0 { 0.6 } else { 1.25 };
-        self.reach = (self.reach * factor).clamp(0.1 * STEP_LIMIT, FLAT_STEP_LIMIT);
-    }
-}
-
 /// How near pairs are kept for the iterations of a leap, in radii.
 const REACH: f32 = 1.5;
 
@@ -87,6 +57,9 @@ pub struct Problem {
     pub fidelity: f32,
     /// `[cells]` size factor at λ = 0; `None` for 1, the rest shape.
     pub from: Option<Vec<f32>>,
+    /// `[cells]` weight of each cell's misfit in the plane, `1 / s²`: a cell that shall be small is as much off by a tenth
+    /// of its size as a large one. Empty for 1, which serves in space.
+    weights: Vec<f32>,
     operator: Multigrid,
     boundary_nodes: Vec<u32>,
 }
@@ -103,8 +76,17 @@ impl Problem {
             importance,
             fidelity,
             from: None,
+            weights: Vec::new(),
             operator: Multigrid::new(complex, Weights::Cells),
             boundary_nodes: (0..complex.nodes() as u32).filter(|&i| complex.on_boundary[i as usize]).collect(),
+        }
+    }
+
+    /// Weighs the cells of a flat complex by the sizes asked for now.
+    pub fn weigh(&mut self, complex: &Complex, asked: &Asked) {
+        if complex.dimension == Dimension::Two {
+            self.weights = asked.size.iter().map(|s| 1.0 / (s * s)).collect();
+            self.operator = Multigrid::of_cells(complex, &self.weights);
         }
     }
 
@@ -183,6 +165,7 @@ pub fn global_step(
     targets: &[Mat3A],
     contacts: &Contacts,
 ) -> (Vec<Vec3A>, f64) {
+    let weight = |cell: u32| problem.weights.get(cell as usize).copied().unwrap_or(1.0);
     let corner_gather = local::corner_gather(complex.dimension);
     let mut force = Vec::new();
     problem.operator.apply(positions, &mut force);
@@ -190,7 +173,7 @@ pub fn global_step(
         let mut sum = -*force;
         for (corner, &cell) in complex.cells_around[i].iter().enumerate() {
             if cell != u32::MAX {
-                sum += targets[cell as usize] * corner_gather[corner];
+                sum += weight(cell) * (targets[cell as usize] * corner_gather[corner]);
             }
         }
         for c in contacts.of(i) {
@@ -248,7 +231,7 @@ fn remove_rigid_motion(positions: &[Vec3A], step: &mut [Vec3A]) {
     step.par_iter_mut().zip(positions).with_min_len(CHUNK).for_each(|(d, x)| *d -= drift + spin.cross(*x - centre));
 }
 
-/// Guard: takes of the proposed step what stays injective. `restraint` is kept from step to step. Returns the new
+/// Guard: takes of the proposed step what stays injective. `holds` is kept from step to step. Returns the new
 /// positions' largest motion in cells and what was held back.
 pub fn guard_step(
     complex: &Complex,
@@ -256,13 +239,15 @@ pub fn guard_step(
     shells: &mut [Shell],
     positions: &mut Vec<Vec3A>,
     mut proposed: Vec<Vec3A>,
-    restraint: &mut Restraint,
+    holds: &mut Vec<u8>,
 ) -> (f32, Guarded) {
-    let reach = restraint.reach(complex.dimension);
+    let reach = match complex.dimension {
+        Dimension::Two => FLAT_STEP_LIMIT,
+        Dimension::Three => STEP_LIMIT,
+    };
     guard::limit(positions, &mut proposed, |i| reach * asked.radius[i].min(1.0));
     let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
-    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, &mut restraint.holds);
-    restraint.adapt(&guarded);
+    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
     let motion = largest_motion(positions, &proposed);
     *positions = proposed;
     (motion, guarded)

@@ -5,7 +5,7 @@ use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Growth, Guarded, Problem, Restraint, Shell, areas::AreaCorrection, contact, contact_step, global_step, grow,
+    Asked, Contacts, Growth, Guarded, Problem, Shell, areas::AreaCorrection, contact, contact_step, global_step, grow,
     guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
@@ -72,9 +72,9 @@ pub struct Shells(pub Vec<Shell>);
 #[derive(Component, Debug, Default)]
 pub struct BoundaryAtRisk(pub bool);
 
-/// What the guard keeps from step to step.
+/// `[nodes]` how often the guard halved each node's last step.
 #[derive(Component, Debug, Default)]
-pub struct Holds(pub Restraint);
+pub struct Holds(pub Vec<u8>);
 
 /// What the guard held back in the last iteration.
 #[derive(Component, Debug, Default)]
@@ -155,15 +155,22 @@ fn correct_areas(mut domains: Query<Corrected>, mut watch: ResMut<Stopwatch>) {
         if let Some(importance) = corrected {
             problem.0.importance = smoothed(&lattice.0, &importance);
             sizes.0 = grow(&lattice.0, &problem.0, 1.0);
+            problem.0.weigh(&lattice.0, &sizes.0);
             growing.0.again();
         }
     }
 }
 
-fn grow_sizes(mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &mut Sizes)>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), mut sizes) in &mut domains {
+fn grow_sizes(
+    mut domains: Query<(&Lattice, &mut CollisionProblem, &Growing, &mut Sizes)>,
+    mut watch: ResMut<Stopwatch>,
+) {
+    for (Lattice(complex), mut problem, Growing(growth), mut sizes) in &mut domains {
         if !growth.done() && growth.is_new_step() {
-            sizes.0 = watch.time("grow", || grow(complex, problem, growth.lambda()));
+            watch.time("grow", || {
+                sizes.0 = grow(complex, &problem.0, growth.lambda());
+                problem.0.weigh(complex, &sizes.0);
+            });
         }
     }
 }
@@ -300,7 +307,6 @@ fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
         let (motion, guarded) = watch.time("guard", || {
             guard_step(complex, &sizes.0, &mut shells.0[..guarded], &mut warped.0, proposed, &mut holds.0)
         });
-        eprintln!("TRACE {:.4} it {} motion {motion:.3} {guarded:?} risk {}", growing.0.lambda(), growing.0.iteration(), at_risk.0);
         growing.0.iterated(motion);
         if guarded.held_back > 0 || complex.dimension == Dimension::Two {
             growing.0.held_back();

@@ -118,6 +118,29 @@ impl Multigrid {
             }
             diagonal[i] += mass.get(i).copied().unwrap_or(0.0);
         }
+        Self::of_finest(complex, off_diagonal, diagonal, mass)
+    }
+
+    /// Builds all levels of the Laplacian in which every edge weighs the sum of `[cells]` weights > 0 around it.
+    pub fn of_cells(complex: &Complex, weights: &[f32]) -> Self {
+        let mut off_diagonal = vec![[0.0_f32; NEIGHBOURS]; complex.nodes()];
+        let mut diagonal = vec![0.0_f32; complex.nodes()];
+        let count = complex.dimension.corners();
+        for (corners, &weight) in complex.corners.iter().zip(weights) {
+            for corner in 0..count {
+                for direction in (1..count).filter(|direction| corner & direction == 0) {
+                    let [i, j] = [corner, corner | direction].map(|k| corners[k] as usize);
+                    for (node, slot) in [(i, direction - 1), (j, direction + 6)] {
+                        off_diagonal[node][slot] -= weight;
+                        diagonal[node] += weight;
+                    }
+                }
+            }
+        }
+        Self::of_finest(complex, off_diagonal, diagonal, Vec::new())
+    }
+
+    fn of_finest(complex: &Complex, off_diagonal: Vec<[f32; NEIGHBOURS]>, diagonal: Vec<f32>, mass: Vec<f32>) -> Self {
         let mut levels = vec![Level {
             neighbours: complex.neighbours.clone(),
             off_diagonal,

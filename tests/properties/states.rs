@@ -4,7 +4,7 @@
 use glam::{DVec3, IVec3, Mat3A, Quat, Vec3A};
 use homunculus::{
     certificate::{Certificate, Surface, certify, certify_way},
-    collision::{Problem, Restraint, Shell, contact_step, global_step, grow, guard, guard_step, local_step},
+    collision::{Problem, Shell, contact_step, global_step, grow, guard, guard_step, local_step},
     edge::EdgeSolver,
     film::blend,
     voxel::Complex,
@@ -111,7 +111,7 @@ impl<'a> Run<'a> {
 
     fn iterate(&mut self, iteration: &Iteration) {
         let (asked, proposed) = self.propose(iteration);
-        guard_step(self.complex, &asked, &mut self.shells, &mut self.positions, proposed, &mut Restraint::default());
+        guard_step(self.complex, &asked, &mut self.shells, &mut self.positions, proposed, &mut Vec::new());
     }
 }
 
@@ -281,7 +281,7 @@ fn a_body_is_not_swallowed_by_another() {
     let problem = Problem::new(&complex, &vec![1.0; complex.nodes()], 0.5);
     let asked = grow(&complex, &problem, 1.0);
     let proposed = lifted(&complex, &positions, 0.45);
-    guard_step(&complex, &asked, &mut shells, &mut positions, proposed, &mut Restraint::default());
+    guard_step(&complex, &asked, &mut shells, &mut positions, proposed, &mut Vec::new());
     assert_eq!(fault(&complex, &positions), Ok(()));
 }
 
