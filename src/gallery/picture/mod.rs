@@ -47,7 +47,7 @@ static SCENES: [Kept; 4] = [
     Kept {
         entry: Entry {
             name: "africa",
-            one_line: "a map of Africa whose countries become as large as their population",
+            one_line: "a map of Africa whose countries grow with the density of their population",
             reference: "population 2014: World Bank, World Development Indicators, SP.POP.TOTL (no figure for Eritrea and Western \
                         Sahara, which keep their size); outlines after Natural Earth 1:110m, public domain",
             resolution: 256,
@@ -58,7 +58,7 @@ static SCENES: [Kept; 4] = [
         source: Source::Regions {
             ids: asset!("africa_id.png"),
             table: asset!("africa_population_2014.csv"),
-            per_area: true,
+            per_area: false,
         },
     },
     Kept {
