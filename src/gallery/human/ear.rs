@@ -38,9 +38,9 @@ impl Ear {
         let (sin, cos) = 22.0_f32.to_radians().sin_cos();
         let d = q - v(67.0, -20.0, -2.0);
         let e = v(-d.z * cos + d.x * sin, d.y - 0.12 * d.z, d.x * cos + d.z * sin);
-        let plate = ellipsoid(e, v(11.0, 1.0, 1.4), v(17.5, 29.0, 4.4));
+        let plate = ellipsoid(e, v(11.5, 1.0, 1.9), v(18.6, 30.5, 5.2));
         let root = ellipsoid(e, v(5.0, 5.0, -4.0), v(11.0, 28.0, 7.0));
-        let mut ear = union(union(plate, root, 6.0), tube(e, &self.helix), 4.0);
+        let mut ear = union(union(plate, root, 6.0), tube(e, &self.helix), 5.0);
         ear = union(ear, tube(e, &self.antihelix), 4.0);
         ear = cut(ear, ellipsoid(e, v(8.5, -2.5, 6.8), v(6.8, 9.0, 5.6)), 3.0);
         union(ear, ellipsoid(e, v(0.5, -5.0, 4.0), v(3.4, 5.5, 3.4)), 3.0)

@@ -52,11 +52,11 @@ impl Face {
             corner,
         ];
         let line = [
-            k(-7.0, -71.2, 106.4, 1.3),
-            k(0.0, -71.9, 107.0, 1.3),
-            k(7.0, -71.2, 106.4, 1.3),
-            k(16.0, -72.2, 102.4, 1.3),
-            k(25.0, -72.6, 97.4, 1.0),
+            k(-7.0, -71.2, 0.0, 2.4),
+            k(0.0, -71.9, 0.0, 2.4),
+            k(7.0, -71.2, 0.0, 2.4),
+            k(16.0, -72.2, 0.0, 2.4),
+            k(25.0, -72.6, 0.0, 2.0),
         ];
         Self {
             brow: curve(&brow, 5),
@@ -113,12 +113,13 @@ impl Face {
         f += 2.0 * bump(((q - v(0.0, -89.0, 101.0)) / v(24.0, 10.0, 16.0)).length(), 1.0);
         f = union(f, self.lips(q), 3.0);
         f += 1.2 * bump(q.distance(v(29.0, -73.5, 92.5)), 8.0);
-        cut(f, tube(q, &self.mouth_line), 2.4)
+        // Pressed in, not cut out: a cut would undermine the lips, and the triangles of its rims would cross.
+        f + 1.6 * stroke(q.with_z(0.0), &self.mouth_line)
     }
 
     /// Near-distance to the two lips, millimetres.
     pub fn lips(&self, q: Vec3) -> f32 {
-        union(tube(q, &self.upper_lip), tube(q, &self.lower_lip), 2.0)
+        union(tube(q, &self.upper_lip), tube(q, &self.lower_lip), 5.0)
     }
 
     /// Near-distance to the ear, millimetres.

@@ -125,7 +125,7 @@ fn head(paint: &mut Paint, human: &Human, body: Vec3) {
     paint.over("eye", ramp(23.0 - q.distance(EYE.0), -1.0, 7.0));
     let nose = round_cone(q, v(0.0, 2.0, 96.0), v(0.0, -41.0, 106.0), 10.0, 18.0);
     paint.over("nose", ramp(-nose, -4.0, 1.5) * ramp(q.y, -56.0, -50.0));
-    paint.over("lip", ramp(2.2 - face.lips(q), 0.0, 3.0) * ramp(q.z, 60.0, 75.0));
+    paint.over("lip", ramp(3.2 - face.lips(q), 0.0, 5.2) * ramp(q.z, 60.0, 75.0));
     paint.over("ear", ramp(3.5 - face.ear(q), 0.0, 6.0) * ramp(q.x, 64.0, 74.0));
 }
 
