@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::shapes::{Solid, Tube, around, extrude, frame, stick};
-use crate::gallery::implicit::{Frame, Loft, Station, ball, ellipsoid, round_cone};
+use crate::gallery::implicit::{Frame, Loft, Station, ellipsoid, round_cone};
 
 const fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
@@ -59,7 +59,7 @@ fn vase(s: &mut Solid) {
 }
 
 fn flower(s: &mut Solid, f: Frame, turn: f32) {
-    s.add("petal", 0.03, move |p| ball(f.local(p), v(0.0, 0.012, 0.0), 0.050));
+    s.add("petal", 0.03, move |p| ellipsoid(f.local(p), v(0.0, 0.030, 0.0), v(0.062, 0.075, 0.062)));
     s.add("petal", 0.016, move |p| {
         let q = around(f.local(p), COUNT, turn);
         // Outline from above, as a radius over the angle: petals that part gently, joined to a cup below.
@@ -74,9 +74,9 @@ fn flower(s: &mut Solid, f: Frame, turn: f32) {
         let rise = 1.05 * radius - 2.6 * radius * radius + 1.4 * side * side;
         extrude(outline, q.y - rise, 0.0175, 0.0165) * 0.85
     });
-    let tip = v(0.0, 0.195, 0.082);
+    let tip = v(0.0, 0.195, 0.098);
     let phase = turn + 0.5 * std::f32::consts::TAU / COUNT as f32;
-    let filament = Tube::new(&[(v(0.0, 0.03, 0.018), 0.0150), (v(0.0, 0.12, 0.045), 0.0145), (tip, 0.0140)]);
+    let filament = Tube::new(&[(v(0.0, 0.03, 0.024), 0.0150), (v(0.0, 0.12, 0.064), 0.0145), (tip, 0.0140)]);
     s.add("filament", 0.012, move |p| filament.distance(around(f.local(p), COUNT, phase)));
     let anther = frame(tip + v(0.0, 0.006, 0.002), v(0.0, 1.0, 0.55), Vec3::Z);
     s.add("anther", 0.008, move |p| {

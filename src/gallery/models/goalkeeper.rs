@@ -115,6 +115,7 @@ fn head(s: &mut Solid, body: Frame) {
 fn arm(s: &mut Solid, body: Frame, side: &Side) {
     let [shoulder, elbow, wrist] = [side.shoulder, side.elbow, side.wrist].map(|p| body.world(p));
     s.add("shoulder", 0.07, move |p| ball(p, shoulder, 0.082));
+    s.paint("shoulder", move |p| ramp(-ball(p, shoulder, 0.075), -0.055, 0.0));
     let upper = Tube::new(&[(shoulder, 0.066), (shoulder.lerp(elbow, 0.45), 0.060), (elbow, 0.045)]);
     s.add("upper_arm", 0.04, move |p| upper.distance(p));
     let fore = Tube::new(&[(elbow, 0.046), (elbow.lerp(wrist, 0.35), 0.049), (wrist, 0.036)]);
@@ -154,6 +155,7 @@ fn leg(s: &mut Solid, body: Frame, side: &Side) {
     let hem = hip.lerp(knee, 0.52);
     s.add("thigh", 0.012, move |p| round_cone(p, hip, hem, 0.105, 0.096).max((p - hem).dot((knee - hip).normalize())));
     s.add("knee", 0.03, move |p| ball(p, knee, 0.064));
+    s.paint("knee", move |p| ramp(-ball(p, knee, 0.068), -0.050, 0.0));
     let calf = knee.lerp(ankle, 0.32);
     let back = (knee - hip).normalize() + (knee - ankle).normalize();
     let shin = Tube::new(&[(knee, 0.056), (calf - back * 0.012, 0.060), (knee.lerp(ankle, 0.7), 0.046), (ankle, 0.041)]);

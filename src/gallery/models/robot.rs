@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::shapes::{Solid, Tube, disc, frame, stick};
-use crate::gallery::implicit::{Loft, Station, ball, ellipsoid, round_box, round_cone};
+use crate::gallery::implicit::{Loft, Station, ball, ellipsoid, ramp, round_box, round_cone};
 
 const fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
@@ -97,6 +97,8 @@ fn limbs(s: &mut Solid) {
         ("ankle", ANKLE, 0.062),
     ] {
         s.pair(name, 0.012, move |p| ball(p, at, r));
+        // All of the ball belongs to the joint, what runs through it too.
+        s.paint(name, move |p| ramp(-ball(Vec3::new(p.x.abs(), p.y, p.z), at, 1.10 * r), -0.028, 0.0));
         // The axle's cap, outside.
         let cap = frame(at + v(0.72 * r, 0.0, 0.0), Vec3::X, Vec3::Y);
         s.pair(name, 0.008, move |p| disc(cap.local(p), 0.62 * r, 0.36 * r, 0.20 * r));
