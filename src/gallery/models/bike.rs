@@ -127,7 +127,9 @@ fn drive(s: &mut Solid) {
     s.add("crank", 0.008, move |p| disc(ring.local(p), 0.098, 0.0155, 0.010));
     s.add("crank", 0.008, move |p| disc(cog.local(p), 0.050, 0.0155, 0.010));
     for (up, ratio) in [(0.083, 0.035), (-0.083, -0.035)] {
-        s.add("crank", 0.006, move |p| stick(p, CRANK + side + v(0.0, up, 0.0), REAR + side + v(0.0, ratio, 0.0), 0.0150));
+        s.add("crank", 0.006, move |p| {
+            stick(p, CRANK + side + v(0.0, up, 0.0), REAR + side + v(0.0, ratio, 0.0), 0.0150)
+        });
     }
     // Right crank forward, left crank back.
     for turn in [1.0_f32, -1.0] {

@@ -27,7 +27,14 @@ pub fn solid() -> Solid {
         v(-0.86, -0.02, -0.42),
         v(0.88, 1.78, 0.66),
         0.03,
-        &[("vase", 0.026), ("stem", 0.018), ("leaf", 0.018), ("petal", 0.0165), ("filament", 0.013), ("anther", 0.0105)],
+        &[
+            ("vase", 0.026),
+            ("stem", 0.018),
+            ("leaf", 0.018),
+            ("petal", 0.0165),
+            ("filament", 0.013),
+            ("anther", 0.0105),
+        ],
     );
     vase(&mut s);
     for (k, (at, towards, turn)) in FLOWERS.into_iter().enumerate() {
@@ -51,7 +58,14 @@ pub fn solid() -> Solid {
 fn vase(s: &mut Solid) {
     let ring = |y: f32, r: f32| Station::sym(y, r, r, -r, 2.0);
     let outer = Loft::new(
-        &[ring(0.03, 0.125), ring(0.10, 0.170), ring(0.22, 0.200), ring(0.34, 0.165), ring(0.44, 0.118), ring(0.51, 0.135)],
+        &[
+            ring(0.03, 0.125),
+            ring(0.10, 0.170),
+            ring(0.22, 0.200),
+            ring(0.34, 0.165),
+            ring(0.44, 0.118),
+            ring(0.51, 0.135),
+        ],
         [0.03, 0.03],
     );
     s.add("vase", 0.0, move |p| outer.distance(p));
@@ -98,4 +112,3 @@ fn leaf(s: &mut Solid, f: Frame, length: f32) {
     });
     s.add("leaf", 0.02, move |p| stick(p, f.origin, f.world(v(0.0, 0.08, 0.02)), 0.022));
 }
-

@@ -104,7 +104,9 @@ fn head(s: &mut Solid, body: Frame) {
     s.add("head", 0.05, move |p| ellipsoid(at(p), v(0.0, 0.630, 0.062), v(0.060, 0.062, 0.062)));
     // Nose, ears, a cap of hair.
     s.add("head", 0.020, move |p| round_cone(at(p), v(0.0, 0.700, 0.118), v(0.0, 0.668, 0.132), 0.012, 0.019));
-    s.add("head", 0.012, move |p| ellipsoid(v(at(p).x.abs(), at(p).y, at(p).z), v(0.086, 0.682, 0.010), v(0.016, 0.032, 0.024)));
+    s.add("head", 0.012, move |p| {
+        ellipsoid(v(at(p).x.abs(), at(p).y, at(p).z), v(0.086, 0.682, 0.010), v(0.016, 0.032, 0.024))
+    });
     s.add("head", 0.010, move |p| {
         let q = at(p);
         let hair = ellipsoid(q, v(0.0, 0.712, 0.000), v(0.094, 0.108, 0.106));
@@ -127,9 +129,7 @@ fn arm(s: &mut Solid, body: Frame, side: &Side) {
     let inward = if side.palm.x > 0.0 { 1.0 } else { -1.0 };
     let inward = if glove.axes.x_axis.dot(body.axes.x_axis) > 0.0 { inward } else { -inward };
     s.add("hand", 0.014, move |p| round_cone(glove.local(p), v(0.0, 0.0, 0.0), v(0.0, 0.04, 0.0), 0.047, 0.049));
-    s.add("hand", 0.022, move |p| {
-        round_box(glove.local(p) - v(0.0, 0.095, 0.0), v(0.068, 0.062, 0.034), 0.032)
-    });
+    s.add("hand", 0.022, move |p| round_box(glove.local(p) - v(0.0, 0.095, 0.0), v(0.068, 0.062, 0.034), 0.032));
     for (i, length) in [0.098, 0.108, 0.102, 0.084].into_iter().enumerate() {
         let k = 1.5 - i as f32;
         let (sin, cos) = (inward * k * 17.0_f32).to_radians().sin_cos();
@@ -158,7 +158,8 @@ fn leg(s: &mut Solid, body: Frame, side: &Side) {
     s.paint("knee", move |p| ramp(-ball(p, knee, 0.068), -0.050, 0.0));
     let calf = knee.lerp(ankle, 0.32);
     let back = (knee - hip).normalize() + (knee - ankle).normalize();
-    let shin = Tube::new(&[(knee, 0.056), (calf - back * 0.012, 0.060), (knee.lerp(ankle, 0.7), 0.046), (ankle, 0.041)]);
+    let shin =
+        Tube::new(&[(knee, 0.056), (calf - back * 0.012, 0.060), (knee.lerp(ankle, 0.7), 0.046), (ankle, 0.041)]);
     s.add("shin", 0.03, move |p| shin.distance(p));
     // A sock's rim.
     let rim = knee.lerp(ankle, 0.20);

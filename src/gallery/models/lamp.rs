@@ -43,11 +43,25 @@ fn arm(s: &mut Solid, a: Vec3, b: Vec3) {
 fn shade(s: &mut Solid, f: Frame) {
     let ring = |y: f32, r: f32| Station::sym(y, r, r, -r, 2.0);
     let outer = Loft::new(
-        &[ring(-0.02, 0.090), ring(0.06, 0.112), ring(0.16, 0.150), ring(0.28, 0.232), ring(0.40, 0.296), ring(0.50, 0.325)],
+        &[
+            ring(-0.02, 0.090),
+            ring(0.06, 0.112),
+            ring(0.16, 0.150),
+            ring(0.28, 0.232),
+            ring(0.40, 0.296),
+            ring(0.50, 0.325),
+        ],
         [0.03, 0.4],
     );
     let inner = Loft::new(
-        &[ring(0.10, 0.085), ring(0.16, 0.112), ring(0.28, 0.190), ring(0.40, 0.254), ring(0.52, 0.284), ring(0.66, 0.30)],
+        &[
+            ring(0.10, 0.085),
+            ring(0.16, 0.112),
+            ring(0.28, 0.190),
+            ring(0.40, 0.254),
+            ring(0.52, 0.284),
+            ring(0.66, 0.30),
+        ],
         [0.03, 0.2],
     );
     s.add("shade", 0.02, move |p| {

@@ -62,20 +62,62 @@ macro_rules! figure {
 static FIGURES: [Figure; 9] = [
     figure!(
         airplane,
-        "an airliner on approach, each part as large as it is loud: landing gear, flaps, engines",
-        "TODO",
+        "an airliner on approach, each part as large as it is loud: engines, landing gear, flaps",
+        "ranking after Matthews 2002 and DLR; sizes estimated",
         96,
         0.8,
         0.008
     ),
-    figure!(elephant, "an elephant, each part as large as its price: tusks grow towards the trunk", "TODO", 96, 0.8, 0.011),
-    figure!(colon, "a coiled gut: a polyp and the stretch around it in focus, the rest as context", "TODO", 96, 0.8, 0.010),
-    figure!(lamp, "a desk lamp, each part as large as it is hot: a bulb grows in its shade", "TODO", 96, 0.8, 0.009),
-    figure!(robot, "a robot, each joint as large as its torque", "TODO", 96, 0.8, 0.008),
-    figure!(comic, "a comic character: eyes, hands and feet", "TODO", 96, 0.8, 0.008),
-    figure!(bike, "a bicycle, large where it touches its rider: saddle, grips, pedals", "TODO", 128, 0.8, 0.0065),
-    figure!(goalkeeper, "a diving goalkeeper, each part as large as it is at risk", "TODO", 128, 0.8, 0.0075),
-    figure!(flowers, "a bunch of lilies, large where the pollen is", "TODO", 128, 0.8, 0.0065),
+    figure!(
+        elephant,
+        "an elephant, each part as large as its black-market price: tusks",
+        "Martin and Vigne 2014; TRAFFIC",
+        96,
+        0.8,
+        0.011
+    ),
+    figure!(
+        colon,
+        "a coiled gut, focus and context: a polyp and the stretch around it",
+        "the idea after Wang, Lee and Tai 2008",
+        96,
+        0.8,
+        0.010
+    ),
+    figure!(
+        lamp,
+        "a desk lamp, each part as large as it is hot: a bulb grows in its shade",
+        "estimated temperatures",
+        96,
+        0.8,
+        0.009
+    ),
+    figure!(
+        robot,
+        "a walking robot, each joint as large as its torque",
+        "Asimov 1 documentation; arms estimated",
+        96,
+        0.8,
+        0.008
+    ),
+    figure!(comic, "a comic character exaggerated: eyes, hands, feet", "a choice", 96, 0.8, 0.008),
+    figure!(
+        bike,
+        "a bicycle, large where it touches its rider: saddle, grips, pedals",
+        "estimated contact",
+        128,
+        0.8,
+        0.0065
+    ),
+    figure!(
+        goalkeeper,
+        "a diving goalkeeper, each part as large as its risk of injury: hands, knees, shoulders",
+        "ranking after Muracki et al. 2021 and Br J Sports Med 45(4):331",
+        128,
+        0.8,
+        0.0075
+    ),
+    figure!(flowers, "lilies in a vase, large where the pollen is: anthers", "schematic", 128, 0.8, 0.0065),
 ];
 
 /// All of them.

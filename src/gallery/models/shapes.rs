@@ -159,9 +159,9 @@ impl<'a> Blocks<'a> {
         let near = (0..count.iter().product::<usize>()).into_par_iter().map(|b| {
             let at = [b % count[0], b / count[0] % count[1], b / count[0] / count[1]].map(|n| n as f32 + 0.5);
             let middle = low + Vec3::from(at) * size;
-            let listed = (0_u32..).zip(&solid.parts).filter(|(_, part)| {
-                (part.field)(middle) < TRUST * (half + 2.0 * part.melt + 0.01)
-            });
+            let listed = (0_u32..)
+                .zip(&solid.parts)
+                .filter(|(_, part)| (part.field)(middle) < TRUST * (half + 2.0 * part.melt + 0.01));
             (listed.map(|(k, _)| k).collect(), solid.distance(middle))
         });
         Self { solid, low, size, count, near: near.collect() }
