@@ -207,7 +207,7 @@ fn classic_deformation_crosses_itself_in_each_scene() {
     for figure in figures() {
         let mut boundary = boundary(figure);
         let crossings =
-            |boundary: &Boundary| warp(boundary, figure.resolution, 1, Some(Reference::Eq1)).certificate.crossings;
+            |boundary: &Boundary| warp(boundary, figure.resolution, 1, Some(Reference::Eq1)).certificate.crossings();
         let count = crossings(&boundary);
         println!("{}: {count} crossings", figure.name);
         assert!(count > 0, "{}", figure.name);
