@@ -8,10 +8,15 @@ use glam::Vec3;
 use super::implicit::Mesh;
 use crate::error::{Error, Result};
 
-/// The surface as GLB: one mesh, f32 positions, u32 indices.
+/// The surface as GLB: one mesh, f32 positions, u16 or u32 indices.
 pub fn to_glb(mesh: &Mesh) -> Vec<u8> {
     let positions: Vec<u8> = mesh.positions.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
-    let indices: Vec<u8> = mesh.triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+    // Two bytes are enough for most models; the largest value is kept free, as the format asks.
+    let short = mesh.positions.len() < usize::from(u16::MAX);
+    let index = |i: &u32| i.to_le_bytes().into_iter().take(if short { 2 } else { 4 });
+    let mut indices: Vec<u8> = mesh.triangles.iter().flatten().flat_map(index).collect();
+    let index_bytes = indices.len();
+    indices.resize(index_bytes.next_multiple_of(4), 0);
     let low = mesh.positions.iter().copied().fold(Vec3::MAX, Vec3::min).to_array();
     let high = mesh.positions.iter().copied().fold(Vec3::MIN, Vec3::max).to_array();
     let json = serde_json::json!({
@@ -20,11 +25,11 @@ pub fn to_glb(mesh: &Mesh) -> Vec<u8> {
         "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
         "accessors": [
             { "bufferView": 0, "componentType": 5126, "count": mesh.positions.len(), "type": "VEC3", "min": low, "max": high },
-            { "bufferView": 1, "componentType": 5125, "count": mesh.triangles.len() * 3, "type": "SCALAR" },
+            { "bufferView": 1, "componentType": if short { 5123 } else { 5125 }, "count": mesh.triangles.len() * 3, "type": "SCALAR" },
         ],
         "bufferViews": [
             { "buffer": 0, "byteOffset": 0, "byteLength": positions.len(), "target": 34962 },
-            { "buffer": 0, "byteOffset": positions.len(), "byteLength": indices.len(), "target": 34963 },
+            { "buffer": 0, "byteOffset": positions.len(), "byteLength": index_bytes, "target": 34963 },
         ],
         "buffers": [{ "byteLength": positions.len() + indices.len() }],
     });

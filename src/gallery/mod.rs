@@ -1,11 +1,13 @@
 //! Built-in scenes, modelled here: no download, no foreign mesh.
 //!
 //! [`list`] names them, [`open`] gives a scene ready to be warped, [`with_values`] gives a model's importance from a
-//! user's own table. The surfaces are baked in `assets/gallery`; [`human`] and [`implicit`] made them.
+//! user's own table. The surfaces are baked in `assets/gallery`; [`human`], [`models`] and [`implicit`]
+//! made them.
 
 pub mod baked;
 pub mod human;
 pub mod implicit;
+pub mod models;
 pub mod picture;
 
 use std::sync::OnceLock;
@@ -70,7 +72,14 @@ pub fn list() -> &'static [Entry] {
             resolution: 64,
             fidelity: 0.8,
         };
-        homunculi.chain([hand]).collect()
+        let figures = models::figures().iter().map(|f| Entry {
+            name: f.name,
+            one_line: f.one_line,
+            reference: f.reference,
+            resolution: f.resolution,
+            fidelity: f.fidelity,
+        });
+        homunculi.chain([hand]).chain(figures).collect()
     })
 }
 
@@ -83,6 +92,11 @@ pub fn open(name: &str) -> Result<GalleryScene> {
         let model = hand_model()?.clone();
         let values = hand_values(&model);
         let importance = with_values(&model, &values)?;
+        return Ok(GalleryScene { model, importance });
+    }
+    if let Some(figure) = models::figures().iter().find(|f| f.name == name) {
+        let model = figure.model()?;
+        let importance = with_values(&model, &figure.values()?)?;
         return Ok(GalleryScene { model, importance });
     }
     let Some(table) = human::scenes().iter().find(|s| s.scene == name) else {
@@ -132,7 +146,7 @@ pub fn human_model() -> Result<&'static Model> {
     remember(&MODEL, || {
         let mesh = baked::from_glb("human", include_bytes!("../../assets/gallery/human.glb"))?;
         let human = human::Human::default();
-        Ok(label("human", &mesh, |p| human::memberships(&human, p)))
+        Ok(label("human", &mesh, &human::NAMES, |p| human::memberships(&human, p)))
     })
 }
 
@@ -146,7 +160,7 @@ pub fn hand_model() -> Result<&'static Model> {
         let mesh = baked::from_glb("hand", include_bytes!("../../assets/gallery/hand.glb"))?;
         let human = human::Human::default();
         let frame = human.arm.hand.frame;
-        let all = label("hand", &mesh, |p| human::memberships(&human, frame.world(p)));
+        let all = label("hand", &mesh, &human::NAMES, |p| human::memberships(&human, frame.world(p)));
         Ok(only_used_regions(all))
     })
 }
@@ -159,11 +173,16 @@ fn remember(cell: &'static OnceLock<Model>, make: impl FnOnce() -> Result<Model>
     Ok(cell.get_or_init(|| model))
 }
 
-fn label(name: &str, mesh: &Mesh, memberships: impl Fn(Vec3) -> Vec<(u16, f32)> + Sync) -> Model {
+fn label(
+    name: &str,
+    mesh: &Mesh,
+    names: &[impl AsRef<str>],
+    memberships: impl Fn(Vec3) -> Vec<(u16, f32)> + Sync,
+) -> Model {
     let memberships: Vec<_> = mesh.positions.par_iter().map(|&p| memberships(p)).collect();
     let positions = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
     let mut boundary = Boundary::from_triangles(name, positions, mesh.triangles.clone());
-    let region_names: Vec<String> = human::NAMES.iter().map(|&n| n.into()).collect();
+    let region_names: Vec<String> = names.iter().map(|n| n.as_ref().to_owned()).collect();
     let largest =
         |m: &Vec<(u16, f32)>| m.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(u32::MAX, |k| u32::from(k.0));
     boundary.regions =
