@@ -1,6 +1,6 @@
 //! Whether anything can be rendered, and how well.
 
-use bevy::{prelude::*, tasks::block_on};
+use bevy::{prelude::*, render::renderer::RenderAdapterInfo, tasks::block_on};
 
 use crate::{Error, Result};
 
@@ -24,6 +24,16 @@ pub struct Quality {
     pub shadow_map: usize,
     /// Pixels are computed this many times finer along each side and averaged (pictures and films only), ≥ 1.
     pub supersampling: u32,
+}
+
+impl FromWorld for Quality {
+    /// For the adapter that Bevy chose.
+    fn from_world(world: &mut World) -> Self {
+        let is_software = world
+            .get_resource::<RenderAdapterInfo>()
+            .is_none_or(|info| info.device_type == wgpu::DeviceType::Cpu);
+        if is_software { Self::SOFTWARE } else { Self::GPU }
+    }
 }
 
 impl Quality {
@@ -53,7 +63,10 @@ pub fn adapter() -> Result<Adapter> {
         backends: wgpu::Backends::VULKAN,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
-    let options = wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..default() };
+    let options = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        ..default()
+    };
     let found = block_on(instance.request_adapter(&options)).map_err(|_| {
         Error::input(
             "no Vulkan driver was found, and drawing needs one: install your GPU's driver, or Mesa's software driver \

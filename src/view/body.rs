@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy::prelude::*;
 use glam::Vec3A;
 
-use super::{Looks, Picker, Placement};
+use super::{Looks, Placement};
 use crate::{boundary::Boundary, transfer::Binding, voxel::Complex};
 
 /// A boundary, its complex, and what ties them together. Cheap to clone.

@@ -2,7 +2,12 @@
 
 use std::sync::Arc;
 
-use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, prelude::*, render::storage::ShaderBuffer};
+use bevy::{
+    camera::visibility::NoFrustumCulling,
+    light::NotShadowCaster,
+    prelude::*,
+    render::storage::ShaderBuffer,
+};
 use glam::Vec3A;
 
 use super::{
@@ -194,10 +199,9 @@ impl Canvas {
             let sheet = |state: &State| if is_blocks { state.blocks.clone() } else { Some(state.surface.clone()) };
             let (Some(from), Some(to)) = (sheet(from), sheet(to)) else { continue };
             for part in &layer.parts {
-                let is_bound = easel
-                    .materials
-                    .get(&part.material)
-                    .is_some_and(|material| material.from_nodes == from.nodes && material.to_nodes == to.nodes);
+                let is_bound = easel.materials.get(&part.material).is_some_and(|material| {
+                    material.from_nodes == from.nodes && material.to_nodes == to.nodes
+                });
                 if is_bound {
                     continue;
                 }
@@ -241,7 +245,7 @@ impl Canvas {
         }
         let mapped = looks.mapped();
         if let Some((_, _, map)) = mapped {
-            let entries: Vec<Vec4> = map.iter().map(LinearRgba::to_vec4).collect();
+            let entries: Vec<Vec4> = map.iter().map(|colour| colour.to_vec4()).collect();
             debug_assert_eq!(entries.len(), ENTRIES);
             self.colour_map = easel.buffers.add(ShaderBuffer::from(entries));
         }
@@ -318,8 +322,9 @@ fn field(rows: &Rows, body: &Body, looks: &Looks, is_blocks: bool) -> Option<Vec
         marks[*vertex as usize] = 1.0;
     }
     let value = |origin: u32| {
-        let place = mapped
-            .map_or(0.5, |(values, scale, _)| values.get(origin as usize).map_or(0.5, |&value| scale.place(value)));
+        let place = mapped.map_or(0.5, |(values, scale, _)| {
+            values.get(origin as usize).map_or(0.5, |&value| scale.place(value))
+        });
         Vec2::new(place, marks.get(origin as usize).copied().unwrap_or(0.0))
     };
     let mut field: Vec<Vec2> = rows.origin.iter().map(|&origin| value(origin)).collect();

@@ -5,7 +5,7 @@ use std::time::Duration;
 use bevy::{
     anti_alias::fxaa::Fxaa,
     app::TerminalCtrlCHandlerPlugin,
-    camera::RenderTarget,
+    camera::{ImageRenderTarget, RenderTarget},
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     log::LogPlugin,
     prelude::*,
@@ -23,7 +23,7 @@ use bevy::{
     time::TimeUpdateStrategy,
     window::ExitCondition,
 };
-use bevy_egui::{EguiContextSettings, EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
+use bevy_egui::{EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
 use image::RgbaImage;
 
 use super::{Backdrop, Body, Ghost, Looks, Orbit, Placement, Pose, Quality, Studio, ViewPlugin, adapter};
@@ -113,12 +113,12 @@ impl Renderer {
         let camera = (
             Camera3d::default(),
             Camera { clear_color: ClearColorConfig::Custom(Color::NONE), ..default() },
-            RenderTarget::Image(target.clone().into()),
+            // Panels are laid out in pixels of the finished picture.
+            RenderTarget::Image(ImageRenderTarget { handle: target.clone(), scale_factor: supersampling as f32 }),
             Msaa::from_samples(quality.samples),
             Tonemapping::None,
             DebandDither::Disabled,
             Orbit::default(),
-            EguiContextSettings { scale_factor: supersampling as f32, ..default() },
         );
         let camera = app.world_mut().spawn(camera).id();
         if quality.samples == 1 && supersampling == 1 {

@@ -6,11 +6,16 @@ use bevy::{
     pbr::{MaterialPipeline, MaterialPipelineKey},
     prelude::*,
     render::{
+        Render,
+        erased_render_asset::prepare_erased_assets,
+        render_asset::prepare_assets,
         render_resource::{AsBindGroup, Face, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError},
-        storage::ShaderBuffer,
+        storage::{GpuShaderBuffer, ShaderBuffer},
     },
     shader::{ShaderDefVal, ShaderRef},
 };
+
+use super::{Quality, drawn::Carrier, studio::ContactMaterial};
 
 const STUDIO_SHADER: Handle<Shader> = uuid_handle!("0b6d7a5e-51f7-4f86-9d6e-6b1c2e0e7a01");
 const SURFACE_SHADER: Handle<Shader> = uuid_handle!("0b6d7a5e-51f7-4f86-9d6e-6b1c2e0e7a02");
@@ -28,6 +33,19 @@ pub(super) fn load_shaders(app: &mut App) {
     load_internal_asset!(app, BACKDROP_SHADER, "../../shaders/backdrop.wgsl", Shader::from_wgsl);
     load_internal_asset!(app, FLOOR_SHADER, "../../shaders/floor.wgsl", Shader::from_wgsl);
     load_internal_asset!(app, CONTACT_SHADER, "../../shaders/contact.wgsl", Shader::from_wgsl);
+}
+
+/// Lets materials wait for the buffers they are bound to, so that both can be new in one frame.
+pub(super) fn order(render: &mut SubApp) {
+    let buffers = prepare_assets::<GpuShaderBuffer>;
+    render.configure_sets(
+        Render,
+        (
+            prepare_erased_assets::<MeshMaterial3d<SurfaceMaterial>>.into_system_set(),
+            prepare_erased_assets::<MeshMaterial3d<ContactMaterial>>.into_system_set(),
+        )
+            .after(buffers),
+    );
 }
 
 /// What changes from frame to frame. `Shown` of the shader.
@@ -221,5 +239,31 @@ impl Material for SurfaceMaterial {
             fragment.shader_defs.push(taps);
         }
         Ok(())
+    }
+}
+
+/// A material for what is never deformed: one node that stays where it is carries every vertex.
+pub(super) fn still(buffers: &mut Assets<ShaderBuffer>, quality: Quality) -> SurfaceMaterial {
+    let nothing = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO]));
+    SurfaceMaterial {
+        shown: buffers.add(ShaderBuffer::from(Shown { grown: 0.0, ..default() })),
+        carriers: buffers.add(ShaderBuffer::from(vec![Carrier { nodes: UVec4::ZERO, weights: Vec4::ZERO }])),
+        from_nodes: nothing.clone(),
+        to_nodes: nothing.clone(),
+        from_normals: nothing.clone(),
+        to_normals: nothing.clone(),
+        field: nothing.clone(),
+        colour_map: nothing,
+        texture: None,
+        base: Base {
+            colour: Vec4::new(0.30, 0.34, 0.40, 1.0),
+            emissive: Vec4::ZERO,
+            roughness: 0.6,
+            metallic: 0.0,
+            alpha_cutoff: 0.0,
+            first_row: 0,
+        },
+        alpha_mode: AlphaMode::Opaque,
+        variant: Variant { shadow_taps: quality.shadow_taps(), ..default() },
     }
 }

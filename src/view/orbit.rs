@@ -2,6 +2,8 @@
 
 use bevy::{camera::ScalingMode, prelude::*};
 
+use super::ViewSystems;
+
 /// A camera that looks at a target from a distance. Put it on a `Camera3d`; its transform and projection follow.
 #[derive(Component, Debug, Clone, Copy, PartialEq)]
 pub struct Orbit {
@@ -17,6 +19,18 @@ pub struct Orbit {
     pub orthographic: bool,
     /// Turntable: radians per second added to `yaw` by whoever owns the clock ([`Orbit::turn`]).
     pub turntable: f32,
+}
+
+/// Lets cameras follow their [`Orbit`].
+pub(super) fn build(app: &mut App) {
+    app.add_systems(PostUpdate, follow.in_set(ViewSystems::Present));
+}
+
+fn follow(mut cameras: Query<(&Orbit, &mut Transform, &mut Projection), Changed<Orbit>>) {
+    for (orbit, mut transform, mut projection) in &mut cameras {
+        *transform = orbit.transform();
+        *projection = orbit.projection();
+    }
 }
 
 /// A direction to look from.

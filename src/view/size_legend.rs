@@ -1,6 +1,11 @@
 //! A row of reference shapes on the floor: what ×½, ×1, ×2, ×4 look like.
 
-use bevy::prelude::*;
+use bevy::{camera::visibility::NoFrustumCulling, prelude::*, render::storage::ShaderBuffer};
+
+use super::{
+    Quality, ViewSystems,
+    material::{SurfaceMaterial, still},
+};
 
 /// A row of cubes (discs for a flat body) whose sides are ½, 1, 2 and 4 times `unit`. Spawn it on an entity of its own.
 #[derive(Component, Debug, Clone, Copy, PartialEq)]
@@ -12,6 +17,43 @@ pub struct SizeLegend {
     pub is_flat: bool,
     /// Middle of the row, on the floor, view space.
     pub at: Vec3,
+}
+
+/// Shows the rows.
+pub(super) fn build(app: &mut App) {
+    app.add_systems(PostUpdate, present.in_set(ViewSystems::Present));
+}
+
+fn present(
+    mut commands: Commands,
+    legends: Query<(Entity, &SizeLegend, Option<&Children>), Changed<SizeLegend>>,
+    quality: Res<Quality>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<SurfaceMaterial>>,
+    mut buffers: ResMut<Assets<ShaderBuffer>>,
+) {
+    for (entity, legend, children) in &legends {
+        for &child in children.into_iter().flatten() {
+            commands.entity(child).despawn();
+        }
+        let material = materials.add(still(&mut buffers, *quality));
+        for (foot, factor) in legend.centres().into_iter().zip(SizeLegend::FACTORS) {
+            let side = factor * legend.unit;
+            let (mesh, lift) = if legend.is_flat {
+                (Circle::new(0.5 * side).mesh().resolution(96).build(), Vec3::ZERO)
+            } else {
+                (Cuboid::from_length(side).mesh().build(), Vec3::Y * 0.5 * side)
+            };
+            let at = Transform::from_translation(foot + lift);
+            commands.spawn((
+                Mesh3d(meshes.add(mesh)),
+                MeshMaterial3d(material.clone()),
+                at,
+                NoFrustumCulling,
+                ChildOf(entity),
+            ));
+        }
+    }
 }
 
 impl SizeLegend {

@@ -1,0 +1,5 @@
+//! Contract of the view.
+#![cfg(feature = "render")]
+
+#[test]
+fn placeholder() {}
