@@ -29,9 +29,8 @@ pub struct Quality {
 impl FromWorld for Quality {
     /// For the adapter that Bevy chose.
     fn from_world(world: &mut World) -> Self {
-        let is_software = world
-            .get_resource::<RenderAdapterInfo>()
-            .is_none_or(|info| info.device_type == wgpu::DeviceType::Cpu);
+        let is_software =
+            world.get_resource::<RenderAdapterInfo>().is_none_or(|info| info.device_type == wgpu::DeviceType::Cpu);
         if is_software { Self::SOFTWARE } else { Self::GPU }
     }
 }
@@ -63,10 +62,7 @@ pub fn adapter() -> Result<Adapter> {
         backends: wgpu::Backends::VULKAN,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
-    let options = wgpu::RequestAdapterOptions {
-        power_preference: wgpu::PowerPreference::HighPerformance,
-        ..default()
-    };
+    let options = wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..default() };
     let found = block_on(instance.request_adapter(&options)).map_err(|_| {
         Error::input(
             "no Vulkan driver was found, and drawing needs one: install your GPU's driver, or Mesa's software driver \
