@@ -9,7 +9,7 @@ use image::RgbaImage;
 use muxide::api::{Muxer, MuxerBuilder, MuxerError, VideoCodec};
 use openh264::OpenH264API;
 use openh264::encoder::{
-    BitRate, Complexity, Encoder as H264, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, QpRange,
+    BitRate, Complexity, Encoder as H264, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, Profile, QpRange,
     RateControlMode, UsageType, VuiConfig,
 };
 use openh264::formats::YUVBuffer;
@@ -28,6 +28,9 @@ const BITS_PER_PIXEL: f64 = 0.25;
 
 /// Quantizers: below the first nobody sees a difference, above the second edges show.
 const QUANTIZERS: QpRange = QpRange::new(14, 26);
+
+/// How often a frame is handed in again that the encoder left out. It saves a frame's share each time.
+const MOST_TRIES: usize = 100;
 
 /// Seconds between pictures that stand alone: players seek to them.
 const SECONDS_PER_GROUP: u32 = 2;
@@ -73,7 +76,8 @@ impl Mp4 {
             .qp(QUANTIZERS)
             .complexity(Complexity::High)
             .intra_frame_period(IntraFramePeriod::from_num_frames(SECONDS_PER_GROUP * reel.fps))
-            .skip_frames(false)
+            .profile(Profile::High)
+            .skip_frames(true)
             .num_threads(1)
             .vui(VuiConfig::bt709());
         let encoder = H264::with_api_config(OpenH264API::from_source(), config).map_err(fault)?;
@@ -91,10 +95,17 @@ impl Encoder for Mp4 {
     fn frame(&mut self, frame: &RgbaImage) -> Result<()> {
         let (width, height) = (self.reel.width as usize, self.reel.height as usize);
         let yuv = YUVBuffer::from_vec(yuv(frame), width, height);
-        let stream = self.encoder.encode(&yuv).map_err(fault)?;
         self.bytes.clear();
-        stream.write_vec(&mut self.bytes);
-        let is_key = stream.frame_type() == FrameType::IDR;
+        let mut is_key = false;
+        // The encoder leaves out a frame where it has spent too much before; by then it has saved some, and takes it.
+        for _ in 0..MOST_TRIES {
+            let stream = self.encoder.encode(&yuv).map_err(fault)?;
+            stream.write_vec(&mut self.bytes);
+            is_key = stream.frame_type() == FrameType::IDR;
+            if !self.bytes.is_empty() {
+                break;
+            }
+        }
         let seconds = self.frame as f64 / f64::from(self.reel.fps);
         self.frame += 1;
         self.muxer.write_video(seconds, &self.bytes, is_key).map_err(|e| of_muxer(&self.target, e))
