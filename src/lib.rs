@@ -58,6 +58,8 @@ pub mod importance;
 pub mod paint;
 #[cfg(feature = "window")]
 pub mod panel;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod reference;
 pub mod scene;
 pub mod schedule;

@@ -14,7 +14,7 @@ use bevy::{
     ecs::schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
     prelude::*,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 
 pub use crate::certificate::{Certificate, Distortion, Fidelity, RegionFidelity};
 use crate::{
@@ -258,6 +258,25 @@ pub struct Outcome {
     pub importance: Vec<f32>,
 }
 
+/// A solved domain: what came of it, and what it takes to show and check any state of its film.
+#[derive(Debug, Clone)]
+pub struct Solved {
+    /// C and C_t.
+    pub complex: Complex,
+    /// B to C.
+    pub binding: Binding,
+    /// Surfaces that must not cross, for [`certify`]: the complex's skin first.
+    pub shells: Vec<Shell>,
+    /// The node states.
+    pub film: Film,
+    /// V', `[nodes]`, in cells.
+    pub linear: Vec<Vec3A>,
+    /// `[nodes]` importance.
+    pub importance: Vec<f32>,
+    /// The rest.
+    pub outcome: Outcome,
+}
+
 /// Warps a boundary: runs [`Solve`] until λ = 1 has settled, and hands out the film.
 ///
 /// # Errors
@@ -269,6 +288,19 @@ pub fn warp(
     settings: &Settings,
     observer: &dyn Observer,
 ) -> Result<Outcome> {
+    solve(boundary, importance, settings, observer).map(|solved| solved.outcome)
+}
+
+/// As [`warp`], with the states of the nodes.
+///
+/// # Errors
+/// As [`warp`].
+pub fn solve(
+    boundary: &Boundary,
+    importance: &importance::Stack,
+    settings: &Settings,
+    observer: &dyn Observer,
+) -> Result<Solved> {
     let mut run = Run::new(Domain {
         boundary: Arc::new(boundary.clone()),
         importance: Arc::new(importance.clone()),
@@ -280,7 +312,7 @@ pub fn warp(
             return Err(Error::Cancelled);
         }
         if run.step()? {
-            return run.outcome();
+            return run.solved();
         }
     }
 }
@@ -398,6 +430,23 @@ impl Run {
         outcome(self.app.world_mut(), self.entity)
             .ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
     }
+
+    /// The same, with the states of the nodes.
+    ///
+    /// # Errors
+    /// As [`outcome`](Self::outcome).
+    pub fn solved(mut self) -> Result<Solved> {
+        let outcome = self.outcome()?;
+        let mut domain = self.app.world_mut().entity_mut(self.entity);
+        let mut take = || {
+            let (Lattice(complex), Bound(binding)) = (domain.take()?, domain.take()?);
+            let (Shells(shells), Reel(film)) = (domain.take()?, domain.take()?);
+            let (LinearSolution(linear), Importance { nodes: importance, .. }) = (domain.take()?, domain.take()?);
+            let (complex, binding) = (Arc::unwrap_or_clone(complex), Arc::unwrap_or_clone(binding));
+            Some(Solved { complex, binding, shells, film, linear, importance, outcome: outcome.clone() })
+        };
+        take().ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+    }
 }
 
 /// Where a domain is; the stage named is the one about to run.
@@ -470,7 +519,7 @@ fn assemble(
     });
     let boundary = &domain.boundary;
     let (self_intersections, welds) = (get.get::<SelfIntersections>()?.0, get.get::<SuspectedWelds>()?.0);
-    Some(Outcome {
+    let outcome = Outcome {
         input: input_summary(boundary, self_intersections),
         domain: domain_summary(complex, domain.settings.resolution, welds),
         classic: Some(Counts { inverted: classic.inverted(), crossings: classic.crossings() }),
@@ -480,7 +529,8 @@ fn assemble(
         distortion,
         seconds: watch.seconds(),
         importance: domain.importance.at_vertices(boundary),
-    })
+    };
+    Some(outcome)
 }
 
 fn input_summary(boundary: &Boundary, self_intersections: usize) -> InputSummary {

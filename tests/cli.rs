@@ -64,7 +64,7 @@ fn order(arguments: &str) -> Result<WarpOrder, clap::Error> {
     let words = ["homunculus", "warp"].into_iter().chain(arguments.split_whitespace());
     match parse(words.map(Into::into))? {
         Order::Warp(order) => Ok(*order),
-        Order::Inspect(_) => panic!("not inspect"),
+        other => panic!("{other:?} is no warp"),
     }
 }
 
@@ -78,13 +78,13 @@ fn every_option_is_understood() {
     )
     .unwrap();
     let options = &order.options;
-    assert_eq!(options.source, Some(Source::File("body.obj".into())));
+    assert_eq!(options.scene.source, Some(Source::File("body.obj".into())));
     assert_eq!(options.output.as_deref(), Some(Path::new("out.ply")));
     assert_eq!(options.growth.as_deref(), Some(Path::new("g.glb")));
     assert_eq!(options.report.as_deref(), Some(Path::new("r.json")));
-    assert_eq!(options.save_scene.as_deref(), Some(Path::new("s.ron")));
-    assert_eq!((options.seconds, options.threads, options.quiet), (2.5, Some(3), true));
-    assert_eq!((options.reference, options.colour), (Some(ReferenceName::Fig5), Some(Colour::Original)));
+    assert_eq!(options.scene.save_scene.as_deref(), Some(Path::new("s.ron")));
+    assert_eq!((options.seconds, options.scene.threads, options.scene.quiet), (2.5, Some(3), true));
+    assert_eq!((options.scene.reference, options.colour), (Some(ReferenceName::Fig5), Some(Colour::Original)));
     let scene = order.scene().unwrap();
     assert_eq!((scene.resolution, scene.fidelity, scene.keys), (96, 0.9, 12));
     assert_eq!((scene.base, scene.clamp), (0.8, true));

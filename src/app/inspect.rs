@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::options::InspectOptions;
-use super::{Verdict, say, warp};
+use super::{Verdict, load, say};
 use crate::boundary::{Attribute, Boundary};
 use crate::diagnostics::human_bytes;
 use crate::export::report::{DomainReport, InputReport};
@@ -48,7 +48,7 @@ struct AttributeRange {
 /// Looks and tells.
 pub(super) fn run(options: &InspectOptions) -> Result<Verdict> {
     check_resolution(options.resolution)?;
-    let boundary = warp::open(&options.source)?;
+    let boundary = load::open(&options.source)?;
     let (input, domain) = schedule::inspect(&boundary, options.resolution)?;
     let inspection = Inspection {
         source: options.source.to_string(),

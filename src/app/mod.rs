@@ -4,18 +4,22 @@
 //!
 //! | code | meaning |
 //! |---|---|
-//! | 0 | done; for `warp`: certified |
+//! | 0 | done; for `warp` and `record`: certified |
 //! | 1 | stopped, could not write, or a fault of this program |
-//! | 2 | the input or the options are bad |
+//! | 2 | the input or the options are bad, or nothing here can draw |
 //! | 3 | finished but not certified; the result lies next to its report |
 
 mod cancel;
 mod inspect;
+mod load;
 pub mod options;
 mod outputs;
 #[cfg(feature = "window")]
 pub mod play;
 mod progress;
+#[cfg(feature = "record")]
+pub mod record;
+pub mod scene_options;
 mod warp;
 
 use std::ffi::OsString;
@@ -65,6 +69,8 @@ fn run(order: Order) -> Result<Verdict> {
         Order::Inspect(order) => inspect::run(&order),
         #[cfg(feature = "window")]
         Order::Play(order) => play::run(&order),
+        #[cfg(feature = "record")]
+        Order::Record(order) => record::run(*order),
     }
 }
 

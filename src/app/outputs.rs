@@ -29,23 +29,14 @@ impl Outputs {
             mesh: options.output.clone().or_else(|| nothing_named.then(|| default_mesh(&scene.source))),
             growth: options.growth.clone(),
             report: options.report.clone(),
-            scene: options.save_scene.clone(),
+            scene: options.scene.save_scene.clone(),
         };
         check_extension(&outputs.mesh, "-o", &MESH_EXTENSIONS)?;
         check_extension(&outputs.growth, "--growth", &["glb"])?;
         check_extension(&outputs.report, "--report", &["json"])?;
         check_extension(&outputs.scene, "--save-scene", &["ron"])?;
 
-        let mut taken: Vec<PathBuf> = scene.files().into_iter().map(identity).collect();
-        for path in outputs.all() {
-            check_place(path)?;
-            let identity = identity(path);
-            if taken.contains(&identity) {
-                let sentence = "it is an input or another output of this run; give the result another name";
-                return Err(Error::in_file(path, sentence));
-            }
-            taken.push(identity);
-        }
+        check_places(scene, outputs.all())?;
         Ok(outputs)
     }
 
@@ -58,6 +49,21 @@ impl Outputs {
     fn all(&self) -> impl Iterator<Item = &Path> {
         [&self.mesh, &self.growth, &self.report, &self.scene].into_iter().flatten().map(PathBuf::as_path)
     }
+}
+
+/// Whether these files can come to lie where they are wanted, and are neither inputs of the scene nor each other.
+pub(super) fn check_places<'a>(scene: &Scene, paths: impl Iterator<Item = &'a Path>) -> Result<()> {
+    let mut taken: Vec<PathBuf> = scene.files().into_iter().map(identity).collect();
+    for path in paths {
+        check_place(path)?;
+        let identity = identity(path);
+        if taken.contains(&identity) {
+            let sentence = "it is an input or another output of this run; give the result another name";
+            return Err(Error::in_file(path, sentence));
+        }
+        taken.push(identity);
+    }
+    Ok(())
 }
 
 /// `NAME-warped.EXT` in the working directory, in the input's format where it can be written.
@@ -79,7 +85,7 @@ fn extension(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }
 
-fn check_extension(path: &Option<PathBuf>, option: &str, known: &[&str]) -> Result<()> {
+pub(super) fn check_extension(path: &Option<PathBuf>, option: &str, known: &[&str]) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
     if extension(path).is_some_and(|e| known.contains(&e.as_str())) {
         return Ok(());

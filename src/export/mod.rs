@@ -84,6 +84,17 @@ pub fn mesh(boundary: &Boundary, positions: &[DVec3], colours: Option<&[[f32; 3]
 /// [`Error::File`] where the system refuses or `write` fails.
 pub fn write_atomically(path: &Path, write: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>) -> Result<()> {
     let cannot_write = |source| Error::File { path: path.to_path_buf(), what: "cannot write", source };
+    let (folder, builder) = beside(path);
+    let mut temporary = builder.tempfile_in(folder).map_err(cannot_write)?;
+    let mut buffered = BufWriter::new(temporary.as_file_mut());
+    write(&mut buffered).and_then(|()| buffered.flush()).map_err(cannot_write)?;
+    drop(buffered);
+    temporary.persist(path).map_err(|error| cannot_write(error.error))?;
+    Ok(())
+}
+
+/// Where a temporary file lies that is to take the name `path`, and what makes it.
+pub(crate) fn beside(path: &Path) -> (&Path, tempfile::Builder<'static, 'static>) {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".homunculus-").suffix(".part");
@@ -93,12 +104,7 @@ pub fn write_atomically(path: &Path, write: impl FnOnce(&mut BufWriter<&mut File
         // As any new file: the user's mask narrows it.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut temporary = builder.tempfile_in(folder).map_err(cannot_write)?;
-    let mut buffered = BufWriter::new(temporary.as_file_mut());
-    write(&mut buffered).and_then(|()| buffered.flush()).map_err(cannot_write)?;
-    drop(buffered);
-    temporary.persist(path).map_err(|error| cannot_write(error.error))?;
-    Ok(())
+    (folder, builder)
 }
 
 impl Surface<'_> {

@@ -63,10 +63,7 @@ pub fn adapter() -> Result<Adapter> {
         backends: wgpu::Backends::VULKAN,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
-    let options = wgpu::RequestAdapterOptions {
-        power_preference: wgpu::PowerPreference::HighPerformance,
-        ..default()
-    };
+    let options = wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..default() };
     let found = block_on(instance.request_adapter(&options)).map_err(|_| {
         Error::input(
             "no Vulkan driver was found, and drawing needs one: install your GPU's driver, or Mesa's software driver \

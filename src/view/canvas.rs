@@ -2,12 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    camera::visibility::NoFrustumCulling,
-    light::NotShadowCaster,
-    prelude::*,
-    render::storage::ShaderBuffer,
-};
+use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, prelude::*, render::storage::ShaderBuffer};
 use glam::Vec3A;
 
 use super::{
@@ -199,9 +194,10 @@ impl Canvas {
             let sheet = |state: &State| if is_blocks { state.blocks.clone() } else { Some(state.surface.clone()) };
             let (Some(from), Some(to)) = (sheet(from), sheet(to)) else { continue };
             for part in &layer.parts {
-                let is_bound = easel.materials.get(&part.material).is_some_and(|material| {
-                    material.from_nodes == from.nodes && material.to_nodes == to.nodes
-                });
+                let is_bound = easel
+                    .materials
+                    .get(&part.material)
+                    .is_some_and(|material| material.from_nodes == from.nodes && material.to_nodes == to.nodes);
                 if is_bound {
                     continue;
                 }
@@ -322,9 +318,8 @@ fn field(rows: &Rows, body: &Body, looks: &Looks, is_blocks: bool) -> Option<Vec
         marks[*vertex as usize] = 1.0;
     }
     let value = |origin: u32| {
-        let place = mapped.map_or(0.5, |(values, scale, _)| {
-            values.get(origin as usize).map_or(0.5, |&value| scale.place(value))
-        });
+        let place = mapped
+            .map_or(0.5, |(values, scale, _)| values.get(origin as usize).map_or(0.5, |&value| scale.place(value)));
         Vec2::new(place, marks.get(origin as usize).copied().unwrap_or(0.0))
     };
     let mut field: Vec<Vec2> = rows.origin.iter().map(|&origin| value(origin)).collect();

@@ -35,7 +35,10 @@ pub(super) fn shade(triangles: &[[u32; 3]], positions: &[Vec3A]) -> Vec<f32> {
                     // nearer than its own size or a texel's.
                     let area = downward.length();
                     let facing = (d.dot(downward)).max(0.0) * d.y.max(0.0);
-                    facing / (std::f32::consts::PI * (square * square).max(1.0e-6) + area * area + 0.3 * texel * texel * square)
+                    facing
+                        / (std::f32::consts::PI * (square * square).max(1.0e-6)
+                            + area * area
+                            + 0.3 * texel * texel * square)
                 })
                 .sum();
             1.0 - (-sum).exp()

@@ -67,7 +67,9 @@ impl Rows {
         for material in materials {
             let first_row = rows.len();
             let mut indices = Vec::new();
-            for row in table.parts.iter().filter(|p| p.part.material == material).flat_map(|p| p.triangles.as_flattened()) {
+            for row in
+                table.parts.iter().filter(|p| p.part.material == material).flat_map(|p| p.triangles.as_flattened())
+            {
                 let slot = &mut local[*row as usize];
                 if *slot == u32::MAX || (*slot as usize) < first_row {
                     *slot = rows.len() as u32;

@@ -23,7 +23,9 @@ pub(super) fn gradients(complex: &Complex, nodes: &[Vec3A]) -> Vec<Mat3A> {
     let raw: Vec<Mat3A> = (0..nodes.len())
         .into_par_iter()
         .with_min_len(NODES_PER_TASK)
-        .map(|i| Mat3A::from_cols(slope(complex, nodes, i, 0), slope(complex, nodes, i, 1), slope(complex, nodes, i, 2)))
+        .map(|i| {
+            Mat3A::from_cols(slope(complex, nodes, i, 0), slope(complex, nodes, i, 1), slope(complex, nodes, i, 2))
+        })
         .collect();
     (0..nodes.len())
         .into_par_iter()
@@ -61,11 +63,7 @@ pub(super) fn transformed(gradient: &Mat3A, normal: Vec3A) -> Vec3A {
 pub(super) fn octahedral(n: Vec3A) -> u32 {
     let n = n / n.abs().element_sum().max(f32::MIN_POSITIVE);
     let sign = |x: f32| if x < 0.0 { -1.0 } else { 1.0 };
-    let (x, y) = if n.z >= 0.0 {
-        (n.x, n.y)
-    } else {
-        ((1.0 - n.y.abs()) * sign(n.x), (1.0 - n.x.abs()) * sign(n.y))
-    };
+    let (x, y) = if n.z >= 0.0 { (n.x, n.y) } else { ((1.0 - n.y.abs()) * sign(n.x), (1.0 - n.x.abs()) * sign(n.y)) };
     let pack = |v: f32| u32::from((v.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
     pack(x) | pack(y) << 16
 }

@@ -21,10 +21,7 @@ pub(super) fn add_systems(app: &mut App) {
             .before(VisibilitySystems::CalculateBounds)
             .before(AssetEventSystems),
     )
-    .add_systems(
-        PostUpdate,
-        (prepare, place, dress, pose, haunt, write).chain().in_set(ViewSystems::Present),
-    );
+    .add_systems(PostUpdate, (prepare, place, dress, pose, haunt, write).chain().in_set(ViewSystems::Present));
 }
 
 /// Everything a canvas is painted with.
@@ -52,11 +49,7 @@ impl Easels<'_> {
 }
 
 /// Puts new and replaced bodies on the GPU.
-fn prepare(
-    mut commands: Commands,
-    bodies: Query<(Entity, &Body, Option<&Canvas>), Changed<Body>>,
-    mut easels: Easels,
-) {
+fn prepare(mut commands: Commands, bodies: Query<(Entity, &Body, Option<&Canvas>), Changed<Body>>, mut easels: Easels) {
     for (entity, body, old) in &bodies {
         for part in old.into_iter().flat_map(Canvas::entities) {
             commands.entity(part).despawn();
@@ -73,11 +66,7 @@ fn place(mut bodies: Query<(&Placement, &mut Transform), (With<Body>, Changed<Pl
     }
 }
 
-fn dress(
-    mut commands: Commands,
-    mut bodies: Query<(Entity, Ref<Body>, Ref<Looks>, &mut Canvas)>,
-    mut easels: Easels,
-) {
+fn dress(mut commands: Commands, mut bodies: Query<(Entity, Ref<Body>, Ref<Looks>, &mut Canvas)>, mut easels: Easels) {
     for (entity, body, looks, mut canvas) in &mut bodies {
         if looks.is_changed() || body.is_changed() {
             canvas.dress(&mut commands, entity, &body, &looks, &mut easels.easel());
@@ -97,11 +86,7 @@ fn pose(mut bodies: Query<(&Body, Option<&Pose>, &mut Canvas)>, mut easels: Ease
     }
 }
 
-fn haunt(
-    mut commands: Commands,
-    mut bodies: Query<(Entity, Ref<Body>, Has<Ghost>, &mut Canvas)>,
-    mut easels: Easels,
-) {
+fn haunt(mut commands: Commands, mut bodies: Query<(Entity, Ref<Body>, Has<Ghost>, &mut Canvas)>, mut easels: Easels) {
     for (entity, body, is_wanted, mut canvas) in &mut bodies {
         if is_wanted && (canvas.ghost.is_empty() || body.is_changed()) {
             canvas.haunt(&mut commands, entity, &mut easels.easel());
@@ -150,8 +135,5 @@ fn brush(shown: &mut Shown, cursor: &Cursor, looks: &Looks) {
 
 /// The box around everything drawn, view space.
 pub(super) fn scene_bounds(bodies: impl Iterator<Item = (Vec3, [Vec3; 2])>) -> Option<[Vec3; 2]> {
-    bodies
-        .map(|(offset, [low, high])| [low + offset, high + offset])
-        .reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    bodies.map(|(offset, [low, high])| [low + offset, high + offset]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
-

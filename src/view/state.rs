@@ -63,7 +63,8 @@ pub(super) fn placed(body: &Body, frame: &ViewFrame, state: &[Vec3A]) -> Placed 
 
 /// The lowest y of what triangles use.
 fn lowest(body: &Body, positions: &[Vec3A]) -> f32 {
-    let lowest = body.boundary.triangles.iter().flatten().map(|&v| positions[v as usize].y).fold(f32::INFINITY, f32::min);
+    let lowest =
+        body.boundary.triangles.iter().flatten().map(|&v| positions[v as usize].y).fold(f32::INFINITY, f32::min);
     if lowest.is_finite() { lowest } else { 0.0 }
 }
 
@@ -88,8 +89,7 @@ impl State {
     ) -> Self {
         let Placed { positions, lift } = placed(body, frame, state);
         let used = body.boundary.triangles.iter().flatten().map(|&v| positions[v as usize]);
-        let (low, high) =
-            used.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let (low, high) = used.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
         let gradients = normals::gradients(&body.complex, state);
         let displacements = body.binding.displacements(state);
         let surface = Sheet {

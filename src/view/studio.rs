@@ -1,10 +1,10 @@
 //! The studio: key, fill and rim lights, a background without horizon, a floor that only catches shadows.
 
 use bevy::{
+    asset::RenderAssetUsages,
     camera::visibility::NoFrustumCulling,
     light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap, NotShadowCaster, NotShadowReceiver},
     mesh::{MeshVertexBufferLayoutRef, PrimitiveTopology},
-    asset::RenderAssetUsages,
     pbr::{MaterialPipeline, MaterialPipelineKey},
     prelude::*,
     render::{
@@ -219,19 +219,13 @@ fn set_up(
     commands.insert_resource(DirectionalLightShadowMap { size: quality.shadow_map });
     commands.spawn((
         Key,
-        DirectionalLight {
-            shadow_maps_enabled: true,
-            shadow_depth_bias: 0.0,
-            shadow_normal_bias: 0.0,
-            ..default()
-        },
+        DirectionalLight { shadow_maps_enabled: true, shadow_depth_bias: 0.0, shadow_normal_bias: 0.0, ..default() },
         Transform::default(),
     ));
-    let triangle = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
-        .with_inserted_attribute(
-            Mesh::ATTRIBUTE_POSITION,
-            vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(3.0, -1.0, 0.0), Vec3::new(-1.0, 3.0, 0.0)],
-        );
+    let triangle = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD).with_inserted_attribute(
+        Mesh::ATTRIBUTE_POSITION,
+        vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(3.0, -1.0, 0.0), Vec3::new(-1.0, 3.0, 0.0)],
+    );
     let colours = BackdropColours { centre: Vec4::ONE, rim: Vec4::ONE };
     commands.spawn((
         BackdropPlane,
@@ -254,9 +248,15 @@ fn set_up(
 fn furnish(
     studio: Res<Studio>,
     mut backdrops: ResMut<Assets<BackdropMaterial>>,
-    mut backdrop: Query<(&MeshMaterial3d<BackdropMaterial>, &mut Visibility), (With<BackdropPlane>, Without<FloorPlane>)>,
+    mut backdrop: Query<
+        (&MeshMaterial3d<BackdropMaterial>, &mut Visibility),
+        (With<BackdropPlane>, Without<FloorPlane>),
+    >,
     mut floors: Query<&mut Visibility, (With<FloorPlane>, Without<BackdropPlane>)>,
-    mut contacts: Query<&mut Visibility, (With<MeshMaterial3d<ContactMaterial>>, Without<FloorPlane>, Without<BackdropPlane>)>,
+    mut contacts: Query<
+        &mut Visibility,
+        (With<MeshMaterial3d<ContactMaterial>>, Without<FloorPlane>, Without<BackdropPlane>),
+    >,
 ) {
     let shown = |is_shown: bool| if is_shown { Visibility::Inherited } else { Visibility::Hidden };
     for mut visibility in floors.iter_mut().chain(&mut contacts) {

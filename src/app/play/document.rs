@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::app::{options, warp};
+use crate::app::{load, scene_options};
 use crate::boundary::Boundary;
 use crate::importance::Layer;
 use crate::paint::{Canvas, Painting, Under};
@@ -44,7 +44,7 @@ impl Document {
     /// As [`Scene::load`], the readers and [`Stack::load`](crate::importance::Stack::load).
     pub fn read(wanted: &Wanted) -> Result<Self> {
         let (scene, file) = match wanted {
-            Wanted::Source(source) => (Scene::new(options::fresh(source))?, None),
+            Wanted::Source(source) => (Scene::new(scene_options::fresh(source))?, None),
             Wanted::Scene(path) => (Scene::load(path)?, Some(path.clone())),
             Wanted::Autosave(path) => (Scene::load(path)?, None),
         };
@@ -149,9 +149,9 @@ impl Document {
 pub fn under(scene: &Scene, boundary: Option<Arc<Boundary>>) -> Result<Under> {
     let read = match &boundary {
         Some(boundary) => Boundary::clone(boundary),
-        None => warp::open(&scene.source)?,
+        None => load::open(&scene.source)?,
     };
-    let (prepared, stack) = warp::prepare(scene, read)?;
+    let (prepared, stack) = load::prepare(scene, read)?;
     let names = |boundary: &Boundary| boundary.regions.as_ref().map(|r| (r.names.clone(), r.of_vertex.clone()));
     // The same boundary stays the same `Arc`, by which the solver and the view know that nothing else changed.
     let boundary = match boundary {

@@ -1,0 +1,139 @@
+//! What is filmed: a solved domain, its states and what was proven of each.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::{Vec3, Vec3A};
+
+use super::Mix;
+use crate::boundary::Boundary;
+use crate::certificate::{Certificate, certify};
+use crate::collision::Shell;
+use crate::film::blend;
+use crate::schedule::{Outcome, Solved};
+use crate::transfer::Binding;
+use crate::view::{Body, Pose, ViewFrame};
+use crate::voxel::Complex;
+
+/// A solved domain before the camera.
+pub struct Subject {
+    boundary: Arc<Boundary>,
+    complex: Arc<Complex>,
+    binding: Arc<Binding>,
+    shells: Vec<Shell>,
+    /// λ, node state and what was proven of it, by rising λ.
+    keyframes: Vec<(f32, State, Certificate)>,
+    rest: State,
+    linear: State,
+    importance: Arc<Vec<f32>>,
+    node_importance: Arc<Vec<f32>>,
+    proven: HashMap<Shot, Certificate>,
+}
+
+/// `[nodes]` in cells.
+type State = Arc<Vec<Vec3A>>;
+
+/// A state that is shown, exactly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Shot {
+    /// A blend of two keyframes and its bits.
+    Certified(usize, usize, u32),
+    /// Eq. 1 alone at the bits of λ.
+    Classic(u32),
+}
+
+/// Vertices of a state that the camera is fitted to, about: enough that none sticks out by more than the margin.
+const FITTED: usize = 4000;
+
+impl Subject {
+    /// Takes a solved domain; what came of it is handed back.
+    pub fn new(boundary: Arc<Boundary>, solved: Solved) -> (Self, Outcome) {
+        let Solved { complex, binding, shells, film, linear, importance, outcome } = solved;
+        let keyframe = |k: &crate::film::Keyframe| (k.lambda, Arc::new(k.positions.clone()), k.certificate.clone());
+        let subject = Self {
+            boundary,
+            rest: Arc::new(complex.rest.clone()),
+            complex: Arc::new(complex),
+            binding: Arc::new(binding),
+            shells,
+            keyframes: film.keyframes().iter().map(keyframe).collect(),
+            linear: Arc::new(linear),
+            importance: Arc::new(outcome.importance.clone()),
+            node_importance: Arc::new(importance),
+            proven: HashMap::new(),
+        };
+        (subject, outcome)
+    }
+
+    /// `[keyframes]` λ, rising.
+    pub fn lambdas(&self) -> Vec<f32> {
+        self.keyframes.iter().map(|(lambda, ..)| *lambda).collect()
+    }
+
+    /// What is drawn.
+    pub(super) fn body(&self) -> Body {
+        Body { boundary: self.boundary.clone(), complex: self.complex.clone(), binding: self.binding.clone() }
+    }
+
+    /// `[vertices]` importance.
+    pub(super) fn importance(&self) -> &Arc<Vec<f32>> {
+        &self.importance
+    }
+
+    /// `[nodes]` importance.
+    pub(super) fn node_importance(&self) -> &Arc<Vec<f32>> {
+        &self.node_importance
+    }
+
+    /// The certified growth at a mix of keyframes.
+    pub(super) fn pose(&self, mix: Mix) -> Pose {
+        let state = |k: usize| self.keyframes[k].1.clone();
+        Pose { from: state(mix.from), to: state(mix.to), blend: mix.t }
+    }
+
+    /// Eq. 1 alone at λ.
+    pub(super) fn classic_pose(&self, lambda: f32) -> Pose {
+        Pose { from: self.rest.clone(), to: self.linear.clone(), blend: lambda }
+    }
+
+    /// What is proven of the growth at a mix; checked once.
+    pub(super) fn certificate(&mut self, mix: Mix) -> Certificate {
+        if mix.t == 0.0 {
+            return self.keyframes[mix.from].2.clone();
+        }
+        let pose = self.pose(mix);
+        self.prove(Shot::Certified(mix.from, mix.to, mix.t.to_bits()), &pose)
+    }
+
+    /// What is proven of Eq. 1 alone at λ; checked once.
+    pub(super) fn classic_certificate(&mut self, lambda: f32) -> Certificate {
+        let pose = self.classic_pose(lambda);
+        self.prove(Shot::Classic(lambda.to_bits()), &pose)
+    }
+
+    fn prove(&mut self, shot: Shot, pose: &Pose) -> Certificate {
+        let (complex, shells) = (&self.complex, &mut self.shells);
+        let check = || certify(complex, shells, &blend(&pose.from, &pose.to, pose.blend));
+        self.proven.entry(shot).or_insert_with(check).clone()
+    }
+
+    /// Points of the surface in view space, standing on the floor, over all of the certified growth, and of Eq. 1 alone.
+    pub(super) fn reach(&self) -> [Vec<Vec3>; 2] {
+        let points = |state: &State| self.surface(state);
+        let certified = self.keyframes.iter().flat_map(|(_, state, _)| points(state)).collect();
+        let classic = points(&self.rest).into_iter().chain(points(&self.linear)).collect();
+        [certified, classic]
+    }
+
+    /// Some points of the surface in one state.
+    fn surface(&self, state: &State) -> Vec<Vec3> {
+        let frame = ViewFrame::of(&self.boundary);
+        let mut points: Vec<Vec3> = self.binding.apply(state).into_iter().map(|p| frame.world_from_source(p)).collect();
+        if !frame.is_flat {
+            let lowest = points.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+            points.iter_mut().for_each(|p| p.y -= lowest);
+        }
+        let every = points.len().div_ceil(FITTED).max(1);
+        points.into_iter().step_by(every).filter(|p| p.is_finite()).collect()
+    }
+}
