@@ -232,6 +232,7 @@ pub(super) fn camera(
         }
     }
     orbit.set_if_neq(wanted);
+    sandbox.bypass_change_detection().seen_from = wanted;
 }
 
 /// The box around what is shown, view space.

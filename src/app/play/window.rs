@@ -125,7 +125,7 @@ fn panels(
         problem: sandbox.problem.as_deref(),
         warnings: sandbox.open.as_ref().map_or(&[], |open| &open.warnings),
         can_restore: sandbox.memory.can_restore(),
-        can_record: false,
+        can_record: cfg!(feature = "record"),
     };
     let middle = panel::draw(&mut root, &facts, &mut choice, &mut wishes);
     if sandbox.choice != choice {
