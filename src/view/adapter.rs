@@ -29,9 +29,8 @@ pub struct Quality {
 impl FromWorld for Quality {
     /// For the adapter that Bevy chose.
     fn from_world(world: &mut World) -> Self {
-        let is_software = world
-            .get_resource::<RenderAdapterInfo>()
-            .is_none_or(|info| info.device_type == wgpu::DeviceType::Cpu);
+        let is_software =
+            world.get_resource::<RenderAdapterInfo>().is_none_or(|info| info.device_type == wgpu::DeviceType::Cpu);
         if is_software { Self::SOFTWARE } else { Self::GPU }
     }
 }

@@ -21,6 +21,7 @@ mod colours;
 mod contact;
 mod cursor;
 mod drawn;
+pub mod fields;
 mod file_materials;
 mod frame;
 mod ghost;
@@ -41,7 +42,7 @@ pub use cursor::{Cursor, Dab};
 pub use frame::{Placement, ViewFrame};
 pub use ghost::Ghost;
 pub use looks::{Legend, Looks, Mode, VoxelColour, Wipe};
-pub use orbit::{Axis, Orbit};
+pub use orbit::{Axis, FIELD_OF_VIEW, Orbit};
 pub use pick::{Hit, Picker, Target};
 pub use size_legend::SizeLegend;
 pub use studio::{Backdrop, Studio};
@@ -58,7 +59,7 @@ pub struct ViewPlugin;
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
         material::load_shaders(app);
-        app.add_plugins(MaterialPlugin::<material::SurfaceMaterial>::default()).init_resource::<Quality>();
+        app.add_plugins(MaterialPlugin::<material::SurfaceMaterial>::default());
         present::add_systems(app);
         studio::build(app);
         orbit::build(app);
@@ -67,6 +68,11 @@ impl Plugin for ViewPlugin {
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
             material::order(render);
         }
+    }
+
+    fn finish(&self, app: &mut App) {
+        // The adapter is known from here on.
+        app.init_resource::<Quality>();
     }
 }
 
