@@ -22,8 +22,7 @@ use crate::{
     boundary::Boundary,
     certificate::{certify, distortion, fidelity},
     collision::{
-        Shell,
-        Growth, grow,
+        Growth, Shell, grow,
         plugin::{BoundaryAtRisk, CollisionPlugin, CollisionProblem, Growing, Holds, Rotations, Shells, Sizes, Warped},
     },
     diagnostics::Stopwatch,

@@ -20,7 +20,11 @@ fn sheets(n: u32) -> Boundary {
         let first = positions.len() as u32;
         for j in 0..=n {
             for i in 0..=n {
-                positions.push(DVec3::new(f64::from(i) / f64::from(n), f64::from(j) / f64::from(n), f64::from(sheet) * 3.0));
+                positions.push(DVec3::new(
+                    f64::from(i) / f64::from(n),
+                    f64::from(j) / f64::from(n),
+                    f64::from(sheet) * 3.0,
+                ));
             }
         }
         let at = |i: u32, j: u32| first + j * (n + 1) + i;
@@ -175,7 +179,8 @@ fn many(painting: &mut Painting, boundary: &Arc<Boundary>) -> Vec<Vec<u64>> {
             }
             _ => {
                 let brush = Brush { mirror: [k % 3 == 0, false, false], ..brush(actions[k % 5], 2.0, 0.7) };
-                let at: Vec<[f64; 3]> = (0..4).map(|_| [unit(), unit(), if unit() < 0.5 { 0.0 } else { 3.0 }]).collect();
+                let at: Vec<[f64; 3]> =
+                    (0..4).map(|_| [unit(), unit(), if unit() < 0.5 { 0.0 } else { 3.0 }]).collect();
                 stroke(painting, brush, &at, 0.25);
             }
         }
@@ -236,8 +241,11 @@ fn what_is_saved_paints_the_same_again() {
     scene.save(&path).unwrap();
     let loaded = Scene::load(&path).unwrap();
     assert_eq!(*loaded, *scene);
-    let again =
-        Painting::new(Arc::new(Canvas::new(&boundary)), under(&boundary, loaded.layers.clone()), loaded.strokes.clone());
+    let again = Painting::new(
+        Arc::new(Canvas::new(&boundary)),
+        under(&boundary, loaded.layers.clone()),
+        loaded.strokes.clone(),
+    );
     assert_eq!(bits(&again), bits(&painting));
     // And so does the command line.
     let stack = Stack::load(&loaded.layers, 1.0, false, &boundary, Path::new("")).unwrap();

@@ -64,9 +64,7 @@ const KEPT: (u32, u32) = (480, 270);
 /// What the eye tells apart: both are blurred to blocks of 4 pixels; then hardly any block may differ clearly, and all of
 /// them together hardly at all. Levels of 255.
 fn looks_like(a: &RgbImage, b: &RgbImage) -> Result<(), String> {
-    let small = |picture: &RgbImage| {
-        image::imageops::resize(picture, KEPT.0 / 4, KEPT.1 / 4, FilterType::Triangle)
-    };
+    let small = |picture: &RgbImage| image::imageops::resize(picture, KEPT.0 / 4, KEPT.1 / 4, FilterType::Triangle);
     let (a, b) = (small(a), small(b));
     let differences: Vec<f64> = a
         .pixels()
@@ -75,7 +73,11 @@ fn looks_like(a: &RgbImage, b: &RgbImage) -> Result<(), String> {
         .collect();
     let mean = differences.iter().sum::<f64>() / differences.len() as f64;
     let clearly = differences.iter().filter(|d| **d > 30.0).count() as f64 / differences.len() as f64;
-    if mean < 4.0 && clearly < 0.02 { Ok(()) } else { Err(format!("mean {mean:.2}, clearly different {:.1} %", clearly * 100.0)) }
+    if mean < 4.0 && clearly < 0.02 {
+        Ok(())
+    } else {
+        Err(format!("mean {mean:.2}, clearly different {:.1} %", clearly * 100.0))
+    }
 }
 
 fn shrunk(path: &Path) -> RgbImage {

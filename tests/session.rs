@@ -91,11 +91,18 @@ fn a_change_goes_on_from_the_last_valid_state_and_ends_certified() {
     let before = wait(&session, is_at_rest);
     session.set_importance(stack(&boundary, 3.0));
     let linear = wait(&session, |s| s.version > before.version);
-    assert!(!Arc::ptr_eq(linear.linear.as_ref().unwrap(), before.linear.as_ref().unwrap()), "the linear solution first");
-    assert!(Arc::ptr_eq(&linear.film[0].positions, &before.film[0].positions) && !linear.film_is_current, "the old film stays");
+    assert!(
+        !Arc::ptr_eq(linear.linear.as_ref().unwrap(), before.linear.as_ref().unwrap()),
+        "the linear solution first"
+    );
+    assert!(
+        Arc::ptr_eq(&linear.film[0].positions, &before.film[0].positions) && !linear.film_is_current,
+        "the old film stays"
+    );
     let adapting = wait(&session, |s| s.phase == Phase::Adapting && s.warped.is_some());
     // The first valid state on the way lies near the last one, far from rest.
-    let distance = |a: &[glam::Vec3A], b: &[glam::Vec3A]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    let distance =
+        |a: &[glam::Vec3A], b: &[glam::Vec3A]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
     let (state, last) = (adapting.warped.as_ref().unwrap(), before.warped.as_ref().unwrap());
     let rest = &adapting.lattice.as_ref().unwrap().complex.rest;
     assert!(distance(state, last) < distance(state, rest), "{} {}", distance(state, last), distance(state, rest));

@@ -157,7 +157,8 @@ impl Stage {
 
     /// λ of the pose that is shown.
     fn shown_lambda(&mut self) -> f32 {
-        let pose = self.app.world_mut().query_filtered::<&Pose, With<Shown>>().single(self.app.world()).unwrap().clone();
+        let pose =
+            self.app.world_mut().query_filtered::<&Pose, With<Shown>>().single(self.app.world()).unwrap().clone();
         let film = &self.sandbox().snapshot.film;
         let lambda = |state: &Arc<Vec<glam::Vec3A>>| {
             film.iter().find(|key| Arc::ptr_eq(&key.positions, state)).expect("a state of the film").lambda
@@ -187,7 +188,8 @@ fn a_stroke_changes_importance_under_the_pointer_and_undo_restores_the_bits() {
     let boundary = &open.painting.under().boundary;
     let changed: Vec<usize> = (0..before.len()).filter(|&v| before[v] != after[v]).collect();
     assert!(changed.len() > 10);
-    let is_near = |v: &usize| dabs.iter().any(|dab| DVec3::from_array(dab.centre).distance(boundary.positions[*v]) < dab.radius);
+    let is_near =
+        |v: &usize| dabs.iter().any(|dab| DVec3::from_array(dab.centre).distance(boundary.positions[*v]) < dab.radius);
     assert!(changed.iter().all(is_near), "nothing else changes");
     stage.control("z", false);
     assert_eq!(stage.bits(), before);

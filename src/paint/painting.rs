@@ -61,17 +61,7 @@ impl Painting {
     pub fn new(canvas: Arc<Canvas>, under: Under, edits: Vec<Edit>) -> Self {
         let ln_under = logarithms(&under);
         let ln = replay(&canvas, &ln_under, &edits);
-        Self {
-            canvas,
-            under,
-            ln_under,
-            edits,
-            ln,
-            undo: Vec::new(),
-            redo: Vec::new(),
-            stroke: None,
-            version: 0,
-        }
+        Self { canvas, under, ln_under, edits, ln, undo: Vec::new(), redo: Vec::new(), stroke: None, version: 0 }
     }
 
     /// What is painted on.

@@ -27,7 +27,16 @@ pub struct ExportChoice {
 
 impl Default for ExportChoice {
     fn default() -> Self {
-        Self { is_open: false, format: "glb", colour_mesh: false, colour_growth: true, seconds: 4.0, film_seconds: 6.0, film_size: FILM_SIZES[0], film_legend: true }
+        Self {
+            is_open: false,
+            format: "glb",
+            colour_mesh: false,
+            colour_growth: true,
+            seconds: 4.0,
+            film_seconds: 6.0,
+            film_size: FILM_SIZES[0],
+            film_legend: true,
+        }
     }
 }
 
@@ -49,7 +58,10 @@ pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &m
             ui.set_width(360.0);
             let is_done = facts.snapshot.outcome.is_some();
             if !is_done {
-                ui.label(egui::RichText::new("There is something to export as soon as the solver is done.").color(theme::AMBER));
+                ui.label(
+                    egui::RichText::new("There is something to export as soon as the solver is done.")
+                        .color(theme::AMBER),
+                );
                 ui.add_space(6.0);
             }
             ui.add_enabled_ui(is_done, |ui| content(ui, facts, &mut choice.export, wishes));
@@ -58,19 +70,33 @@ pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &m
 }
 
 fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
-    part(ui, "Warped mesh", "Same vertices, same order, same materials as the input", Asked::ExportMesh, wishes, |ui| {
-        egui::ComboBox::from_id_salt("format").width(60.0).selected_text(export.format).show_ui(ui, |ui| {
-            for format in MESH_FORMATS {
-                ui.selectable_value(&mut export.format, format, format);
-            }
-        });
-        ui.checkbox(&mut export.colour_mesh, "colours of importance");
-    });
-    part(ui, "Growth animation", "GLB with morph targets: plays in any glTF viewer", Asked::ExportGrowth, wishes, |ui| {
-        ui.add(egui::DragValue::new(&mut export.seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
-            .on_hover_text("How long it grows");
-        ui.checkbox(&mut export.colour_growth, "colours of importance");
-    });
+    part(
+        ui,
+        "Warped mesh",
+        "Same vertices, same order, same materials as the input",
+        Asked::ExportMesh,
+        wishes,
+        |ui| {
+            egui::ComboBox::from_id_salt("format").width(60.0).selected_text(export.format).show_ui(ui, |ui| {
+                for format in MESH_FORMATS {
+                    ui.selectable_value(&mut export.format, format, format);
+                }
+            });
+            ui.checkbox(&mut export.colour_mesh, "colours of importance");
+        },
+    );
+    part(
+        ui,
+        "Growth animation",
+        "GLB with morph targets: plays in any glTF viewer",
+        Asked::ExportGrowth,
+        wishes,
+        |ui| {
+            ui.add(egui::DragValue::new(&mut export.seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
+                .on_hover_text("How long it grows");
+            ui.checkbox(&mut export.colour_growth, "colours of importance");
+        },
+    );
     if facts.can_record {
         let hint = "MP4 or GIF, as the name ends; seen from where the view stands now, in its colours";
         part(ui, "Film", hint, Asked::ExportFilm, wishes, |ui| {

@@ -155,7 +155,11 @@ fn add(ui: &mut Ui, painting: &crate::paint::Painting, wishes: &mut Vec<Wish>) {
         ui.add_enabled_ui(!attributes.is_empty(), |ui| {
             ui.menu_button("Attribute", |ui| {
                 for attribute in attributes {
-                    if ui.button(&attribute.name).on_hover_text("Its least value becomes ×0.5, its greatest ×2").clicked() {
+                    if ui
+                        .button(&attribute.name)
+                        .on_hover_text("Its least value becomes ×0.5, its greatest ×2")
+                        .clicked()
+                    {
                         let range = Some(crate::importance::IMAGE_RANGE);
                         wishes.push(Wish::AddLayer(Layer::Attribute { name: attribute.name.clone(), range }));
                     }

@@ -26,7 +26,8 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut
                 let text = if facts.recent.is_empty() { "none yet" } else { "choose" };
                 egui::ComboBox::from_id_salt("recent").width(150.0).selected_text(text).show_ui(ui, |ui| {
                     for path in facts.recent {
-                        let name = path.file_name().map_or_else(|| path.to_string_lossy(), |name| name.to_string_lossy());
+                        let name =
+                            path.file_name().map_or_else(|| path.to_string_lossy(), |name| name.to_string_lossy());
                         if ui.selectable_label(false, name).on_hover_text(path.display().to_string()).clicked() {
                             wishes.push(Wish::OpenPath(path.clone()));
                         }
@@ -35,7 +36,9 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut
             });
         });
         theme::row(ui, "Path", "Opens a mesh, picture, table or scene by its path", |ui| {
-            let field = egui::TextEdit::singleline(&mut choice.typed_path).hint_text("type, or drop a file").desired_width(144.0);
+            let field = egui::TextEdit::singleline(&mut choice.typed_path)
+                .hint_text("type, or drop a file")
+                .desired_width(144.0);
             let entered = ui.add(field).lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             if entered && !choice.typed_path.trim().is_empty() {
                 wishes.push(Wish::OpenPath(choice.typed_path.trim().into()));

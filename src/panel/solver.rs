@@ -38,11 +38,16 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, pending: &mut Pending, wishes: &m
             ui.label(theme::weak("Nothing is open."));
             return;
         };
-        let resolution = theme::row(ui, "Resolution", "Cells along the longest side, 8 to 256: finer shows more and takes longer", |ui| {
-            settled(ui, &mut pending.resolution, draft.resolution, |ui, value| {
-                ui.add(egui::Slider::new(value, MIN_RESOLUTION..=MAX_RESOLUTION).logarithmic(true))
-            })
-        });
+        let resolution = theme::row(
+            ui,
+            "Resolution",
+            "Cells along the longest side, 8 to 256: finer shows more and takes longer",
+            |ui| {
+                settled(ui, &mut pending.resolution, draft.resolution, |ui, value| {
+                    ui.add(egui::Slider::new(value, MIN_RESOLUTION..=MAX_RESOLUTION).logarithmic(true))
+                })
+            },
+        );
         wishes.extend(resolution.map(Wish::SetResolution));
         let fidelity = theme::row(ui, "Fidelity", "μ, 0 to 1: 0 keeps shape, 1 reaches the size asked for", |ui| {
             settled(ui, &mut pending.fidelity, draft.fidelity, |ui, value| {
@@ -51,9 +56,16 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, pending: &mut Pending, wishes: &m
         });
         wishes.extend(fidelity.map(Wish::SetFidelity));
         theme::folded(ui, "Advanced", false, |ui| {
-            let keys = theme::row(ui, "Keyframes", "Of the growth, 1 to 64; more are put in where a blend would not be valid", |ui| {
-                settled(ui, &mut pending.keys, draft.keys, |ui, value| ui.add(egui::Slider::new(value, 1..=MAX_KEYS)))
-            });
+            let keys = theme::row(
+                ui,
+                "Keyframes",
+                "Of the growth, 1 to 64; more are put in where a blend would not be valid",
+                |ui| {
+                    settled(ui, &mut pending.keys, draft.keys, |ui, value| {
+                        ui.add(egui::Slider::new(value, 1..=MAX_KEYS))
+                    })
+                },
+            );
             wishes.extend(keys.map(Wish::SetKeys));
             if let Some(lattice) = &facts.snapshot.lattice {
                 let domain = &lattice.summary;

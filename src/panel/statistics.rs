@@ -11,18 +11,28 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts) {
         let snapshot = facts.snapshot;
         let percent = |value: f64| format!("{:.1} %", value * 100.0);
         if let Some(p95) = snapshot.size_error_p95 {
-            theme::row(ui, "Size error", "95th percentile over the elements: how far size achieved is from size asked", |ui| {
-                ui.label(egui::RichText::new(percent(p95)).strong());
-                if let Some(outcome) = &snapshot.outcome {
-                    ui.label(theme::weak(format!("median {}", percent(outcome.fidelity.median))));
-                }
-            });
+            theme::row(
+                ui,
+                "Size error",
+                "95th percentile over the elements: how far size achieved is from size asked",
+                |ui| {
+                    ui.label(egui::RichText::new(percent(p95)).strong());
+                    if let Some(outcome) = &snapshot.outcome {
+                        ui.label(theme::weak(format!("median {}", percent(outcome.fidelity.median))));
+                    }
+                },
+            );
         }
         if let Some(outcome) = &snapshot.outcome {
-            theme::row(ui, "Distortion", "How far elements are from similar, longest over shortest axis: median and 99th percentile", |ui| {
-                ui.label(format!("{:.2}", outcome.distortion.median));
-                ui.label(theme::weak(format!("p99 {:.2}", outcome.distortion.p99)));
-            });
+            theme::row(
+                ui,
+                "Distortion",
+                "How far elements are from similar, longest over shortest axis: median and 99th percentile",
+                |ui| {
+                    ui.label(format!("{:.2}", outcome.distortion.median));
+                    ui.label(theme::weak(format!("p99 {:.2}", outcome.distortion.p99)));
+                },
+            );
             theme::row(ui, "Surface", "Vertices and triangles of what is open", |ui| {
                 ui.label(format!("{} vertices", group(outcome.input.vertices)));
             });
@@ -44,7 +54,9 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts) {
             stages(ui, &snapshot.seconds);
         }
         if let Some(milliseconds) = snapshot.dab_milliseconds {
-            theme::row(ui, "Dab", "From the last stroke to its linear solution", |ui| ui.label(format!("{milliseconds:.0} ms")));
+            theme::row(ui, "Dab", "From the last stroke to its linear solution", |ui| {
+                ui.label(format!("{milliseconds:.0} ms"))
+            });
         }
         if snapshot.lattice.is_none() {
             ui.label(theme::weak("Nothing has been solved yet."));
@@ -69,7 +81,9 @@ fn plain<'a>(name: &'a str, height: f32) -> Plot<'a> {
 fn sizes(ui: &mut Ui, histogram: &Histogram) {
     let greatest = f64::from(histogram.counts.iter().copied().max().unwrap_or(1).max(1));
     let bars = histogram.counts.iter().enumerate().map(|(bin, &count)| {
-        Bar::new(Histogram::octaves(bin), f64::from(count) / greatest).width(1.8 / Histogram::BINS as f64).fill(theme::ACCENT)
+        Bar::new(Histogram::octaves(bin), f64::from(count) / greatest)
+            .width(1.8 / Histogram::BINS as f64)
+            .fill(theme::ACCENT)
     });
     let chart = BarChart::new("elements", bars.collect()).color(theme::ACCENT);
     plain("sizes", 84.0)
@@ -78,7 +92,15 @@ fn sizes(ui: &mut Ui, histogram: &Histogram) {
         .include_x(1.0)
         .x_axis_formatter(|mark, _| {
             let close = |octaves: f64| (mark.value - octaves).abs() < 1.0e-6;
-            if close(-1.0) { "×½".into() } else if close(0.0) { "×1".into() } else if close(1.0) { "×2".into() } else { String::new() }
+            if close(-1.0) {
+                "×½".into()
+            } else if close(0.0) {
+                "×1".into()
+            } else if close(1.0) {
+                "×2".into()
+            } else {
+                String::new()
+            }
         })
         .show(ui, |plot| {
             plot.vline(VLine::new("just right", 0.0).color(theme::GREEN).width(1.0));

@@ -1,8 +1,8 @@
 //! How panels look: one accent colour, three sizes of text, distances in multiples of four points.
 
 use bevy_egui::egui::{
-    self, Color32, Context, CornerRadius, FontFamily, FontId, Frame, Margin, Response, RichText, Shadow, Stroke, TextStyle,
-    Ui, Vec2, Visuals,
+    self, Color32, Context, CornerRadius, FontFamily, FontId, Frame, Margin, Response, RichText, Shadow, Stroke,
+    TextStyle, Ui, Vec2, Visuals,
 };
 
 /// Width of the side panels, points: both leave a view of 680 at 1280.

@@ -8,14 +8,26 @@ use crate::session::{Phase, Snapshot};
 pub(super) fn show(root: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     egui::Panel::top("top").frame(theme::bar_frame()).show(root, |ui| {
         ui.horizontal(|ui| {
-            if ui.button("Open…").on_hover_text("Mesh, picture or scene  (Ctrl+O)\nor drop a file on the window").clicked() {
+            if ui
+                .button("Open…")
+                .on_hover_text("Mesh, picture or scene  (Ctrl+O)\nor drop a file on the window")
+                .clicked()
+            {
                 wishes.push(Wish::Ask(Asked::Open));
             }
             let can_save = facts.draft.is_some();
-            if ui.add_enabled(can_save, egui::Button::new("Save")).on_hover_text("The scene with its strokes  (Ctrl+S)").clicked() {
+            if ui
+                .add_enabled(can_save, egui::Button::new("Save"))
+                .on_hover_text("The scene with its strokes  (Ctrl+S)")
+                .clicked()
+            {
                 wishes.push(Wish::Save);
             }
-            if ui.add_enabled(can_save, egui::Button::new("Export…")).on_hover_text("Warped mesh, growth, report").clicked() {
+            if ui
+                .add_enabled(can_save, egui::Button::new("Export…"))
+                .on_hover_text("Warped mesh, growth, report")
+                .clicked()
+            {
                 choice.export.is_open = true;
             }
             ui.separator();
@@ -40,10 +52,15 @@ pub(super) fn show(root: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &m
 
 fn undo(ui: &mut Ui, facts: &Facts, wishes: &mut Vec<Wish>) {
     let (undo, redo) = facts.painting.map_or((0, 0), crate::paint::Painting::depth);
-    if ui.add_enabled(undo > 0, egui::Button::new("⮪ Undo")).on_hover_text(format!("Ctrl+Z   {undo} steps")).clicked() {
+    if ui.add_enabled(undo > 0, egui::Button::new("⮪ Undo")).on_hover_text(format!("Ctrl+Z   {undo} steps")).clicked()
+    {
         wishes.push(Wish::Undo);
     }
-    if ui.add_enabled(redo > 0, egui::Button::new("⮫ Redo")).on_hover_text(format!("Ctrl+Shift+Z   {redo} steps")).clicked() {
+    if ui
+        .add_enabled(redo > 0, egui::Button::new("⮫ Redo"))
+        .on_hover_text(format!("Ctrl+Shift+Z   {redo} steps"))
+        .clicked()
+    {
         wishes.push(Wish::Redo);
     }
 }
@@ -68,10 +85,14 @@ fn light(ui: &mut Ui, snapshot: &Snapshot, wishes: &mut Vec<Wish>) {
     {
         wishes.push(Wish::LookAt(place));
     }
-    if snapshot.phase.is_busy() && ui.small_button("stop").on_hover_text("Stops solving; what is reached stays  (Esc)").clicked() {
+    if snapshot.phase.is_busy()
+        && ui.small_button("stop").on_hover_text("Stops solving; what is reached stays  (Esc)").clicked()
+    {
         wishes.push(Wish::Cancel);
     }
-    if snapshot.phase == Phase::Stopped && ui.small_button("go on").on_hover_text("Solves on from the last valid state").clicked() {
+    if snapshot.phase == Phase::Stopped
+        && ui.small_button("go on").on_hover_text("Solves on from the last valid state").clicked()
+    {
         wishes.push(Wish::Resume);
     }
     ui.label(RichText::new(text).color(colour).strong()).on_hover_text(hint);
@@ -93,10 +114,18 @@ impl Light {
         let amber = |text: String, hint: &str| Self { colour: theme::AMBER, text, hint: hint.into(), place: None };
         let percent = (snapshot.fraction * 100.0).round();
         match snapshot.phase {
-            Phase::Empty => Self { colour: Color32::GRAY, text: "nothing open".into(), hint: String::new(), place: None },
+            Phase::Empty => {
+                Self { colour: Color32::GRAY, text: "nothing open".into(), hint: String::new(), place: None }
+            }
             Phase::Preparing => amber("voxelizing".into(), "Cells are being made of the inside."),
-            Phase::Adapting => amber(format!("adapting {percent} %"), "From the last valid state to what is painted. Shown: the linear solution, then valid states."),
-            Phase::Growing => amber(format!("growing {percent} %  λ {:.2}", snapshot.lambda), "The film is being solved; each keyframe is checked as it comes."),
+            Phase::Adapting => amber(
+                format!("adapting {percent} %"),
+                "From the last valid state to what is painted. Shown: the linear solution, then valid states.",
+            ),
+            Phase::Growing => amber(
+                format!("growing {percent} %  λ {:.2}", snapshot.lambda),
+                "The film is being solved; each keyframe is checked as it comes.",
+            ),
             Phase::Checking => amber("checking".into(), "States between keyframes are being checked."),
             Phase::Stopped => amber("stopped".into(), "What is shown is valid, but not at rest."),
             Phase::Failed => Self {
@@ -112,11 +141,16 @@ impl Light {
     fn of_result(snapshot: &Snapshot) -> Self {
         let states = || snapshot.film.iter().map(|state| &state.certificate);
         if let Some(bad) = states().find(|certificate| !certificate.certified()) {
-            let text = format!("not certified: {} inverted, {} crossings", bad.inverted(), bad.crossings() + bad.surface_crossings());
+            let text = format!(
+                "not certified: {} inverted, {} crossings",
+                bad.inverted(),
+                bad.crossings() + bad.surface_crossings()
+            );
             let hint = "Some of the film folds or passes through itself. A finer lattice or a lower fidelity may help.";
             return Self { colour: theme::RED, text, hint: hint.into(), place: bad.worst() };
         }
-        let hint = format!("0 inverted elements, 0 crossings in all {} keyframes, decided exactly", snapshot.film.len());
+        let hint =
+            format!("0 inverted elements, 0 crossings in all {} keyframes, decided exactly", snapshot.film.len());
         Self { colour: theme::GREEN, text: "certified".into(), hint, place: None }
     }
 }

@@ -12,8 +12,8 @@ use crate::{
     edge::plugin::LinearSolution,
     film::plugin::Reel,
     importance::{Stack, plugin::Importance},
-    schedule::{Domain, Run, Settings, domain_summary},
     scene::check_resolution,
+    schedule::{Domain, Run, Settings, domain_summary},
     transfer::Binding,
     voxel::{self, plugin::SuspectedWelds, suspected_welds, voxelize},
 };
@@ -149,7 +149,11 @@ impl Worker<'_> {
         let same_lattice = subject.settings.resolution == settings.resolution && self.now.phase != Phase::Failed;
         subject.settings = settings;
         let subject = subject.clone();
-        if same_lattice && self.job.is_some() { self.set_importance(subject.importance, None) } else { self.open(subject) }
+        if same_lattice && self.job.is_some() {
+            self.set_importance(subject.importance, None)
+        } else {
+            self.open(subject)
+        }
     }
 
     /// The linear solution now; the rest once no more dabs come. `at` is when the change was ordered.
@@ -239,7 +243,9 @@ impl Worker<'_> {
 
     /// Tells the run what has changed: from the last valid state if there is one, else from rest.
     fn adapt(&mut self) -> Result<()> {
-        let (domain, Some(Job::Solve(solve))) = (self.subject.as_ref().map(domain), &mut self.job) else { return Ok(()) };
+        let (domain, Some(Job::Solve(solve))) = (self.subject.as_ref().map(domain), &mut self.job) else {
+            return Ok(());
+        };
         let Some(domain) = domain else { return Ok(()) };
         solve.changed = None;
         let (importance, linear) = solve.parts(self.now.linear.as_deref());
@@ -266,7 +272,11 @@ impl Worker<'_> {
         }
         let has_key = self.take_film(adapting);
         if done {
-            if adapting { self.grow_again() } else { self.now.phase = Phase::Checking }
+            if adapting {
+                self.grow_again()
+            } else {
+                self.now.phase = Phase::Checking
+            }
             self.take_state(true);
             self.publish();
         } else if has_key || self.published.elapsed() >= PUBLISH_EVERY {
@@ -288,7 +298,9 @@ impl Worker<'_> {
     /// The present state; with its histogram where it is one of the film.
     fn take_state(&mut self, with_histogram: bool) {
         let (Some(Job::Solve(solve)), Some(lattice)) = (&self.job, &self.now.lattice) else { return };
-        let (Some(Warped(warped)), Some(CollisionProblem(problem))) = (solve.run.get(), solve.run.get()) else { return };
+        let (Some(Warped(warped)), Some(CollisionProblem(problem))) = (solve.run.get(), solve.run.get()) else {
+            return;
+        };
         // While the film is solved again, what is shown is the state that was led to the new sizes.
         let keeps_adapted = self.now.phase == Phase::Growing && !self.now.film.is_empty() && !self.now.film_is_current;
         if keeps_adapted && self.now.warped.is_some() {

@@ -144,13 +144,15 @@ fn measure(
         }
         Stage::Dab(at, version) => {
             let snapshot = &sandbox.snapshot;
-            let Some(milliseconds) = snapshot.dab_milliseconds.filter(|_| snapshot.version > version && !snapshot.film_is_current)
+            let Some(milliseconds) =
+                snapshot.dab_milliseconds.filter(|_| snapshot.version > version && !snapshot.film_is_current)
             else {
                 return;
             };
             bench.dabs.push(milliseconds);
             bench.dabs_shown.push(since(at) * 1e3 + frame);
-            bench.stage = if bench.dabs.len() < DABS { dab(&mut sandbox, bench.dabs.len()) } else { Stage::Solving(now) };
+            bench.stage =
+                if bench.dabs.len() < DABS { dab(&mut sandbox, bench.dabs.len()) } else { Stage::Solving(now) };
         }
         Stage::Solving(at) => {
             if sandbox.snapshot.phase.is_busy() {

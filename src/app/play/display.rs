@@ -26,7 +26,8 @@ pub(super) fn check() -> Result<()> {
     };
     match local_number(&display) {
         Some(number) if UnixStream::connect(format!("/tmp/.X11-unix/X{number}")).is_err() => {
-            let sentence = format!("no display server answers at DISPLAY={display}: start one there, or correct DISPLAY");
+            let sentence =
+                format!("no display server answers at DISPLAY={display}: start one there, or correct DISPLAY");
             Err(Error::input(sentence))
         }
         // A display on another machine is the windowing library's to reach.

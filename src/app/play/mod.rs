@@ -60,7 +60,9 @@ impl Plugin for PlayPlugin {
                 (
                     (keys::press, pointer::handle, pointer::drop_files).chain().in_set(PlaySystems::Input),
                     update.in_set(PlaySystems::Update),
-                    (present::bodies, present::poses, present::looks, present::camera).chain().in_set(PlaySystems::Present),
+                    (present::bodies, present::poses, present::looks, present::camera)
+                        .chain()
+                        .in_set(PlaySystems::Present),
                 ),
             );
     }

@@ -79,7 +79,8 @@ pub(super) fn handle(
     let moved = (at - before.unwrap_or(at)) / viewport.size.y.max(1.0);
     let place = viewport.from_middle(at);
 
-    let turned: f32 = wheels.read().map(|wheel| if wheel.unit == MouseScrollUnit::Line { wheel.y } else { wheel.y / 40.0 }).sum();
+    let turned: f32 =
+        wheels.read().map(|wheel| if wheel.unit == MouseScrollUnit::Line { wheel.y } else { wheel.y / 40.0 }).sum();
     if turned != 0.0 && !on_panel.0 {
         orbit.zoom_to(1.15_f32.powf(turned), place);
     }
@@ -87,15 +88,18 @@ pub(super) fn handle(
     let tool = sandbox.choice.tool;
     if !on_panel.0 && pointer.drag.is_none() {
         let is_shifted = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
-        pointer.drag = if buttons.just_pressed(MouseButton::Middle) || (buttons.just_pressed(MouseButton::Left) && is_shifted) {
-            Some(Drag::Pan)
-        } else if buttons.just_pressed(MouseButton::Right) || (buttons.just_pressed(MouseButton::Left) && tool == Tool::Orbit) {
-            Some(Drag::Orbit)
-        } else if buttons.just_pressed(MouseButton::Left) {
-            Some(Drag::Paint)
-        } else {
-            None
-        };
+        pointer.drag =
+            if buttons.just_pressed(MouseButton::Middle) || (buttons.just_pressed(MouseButton::Left) && is_shifted) {
+                Some(Drag::Pan)
+            } else if buttons.just_pressed(MouseButton::Right)
+                || (buttons.just_pressed(MouseButton::Left) && tool == Tool::Orbit)
+            {
+                Some(Drag::Orbit)
+            } else if buttons.just_pressed(MouseButton::Left) {
+                Some(Drag::Paint)
+            } else {
+                None
+            };
     }
     match pointer.drag {
         Some(Drag::Orbit) if moved != Vec2::ZERO => orbit.orbit(-TURN * moved.x, TURN * moved.y),
@@ -105,7 +109,8 @@ pub(super) fn handle(
 
     for (entity, body, pose, placement, mut picker, cursor) in &mut bodies {
         let is_over = tool != Tool::Orbit && !on_panel.0 && !matches!(pointer.drag, Some(Drag::Orbit | Drag::Pan));
-        let hit = is_over.then(|| pick(&mut picker, body, pose, placement, orbit.ray(place), sandbox.choice.ghost)).flatten();
+        let hit =
+            is_over.then(|| pick(&mut picker, body, pose, placement, orbit.ray(place), sandbox.choice.ghost)).flatten();
         if pointer.drag == Some(Drag::Paint) {
             let began = buttons.just_pressed(MouseButton::Left);
             touch(&mut sandbox, body, hit, began);
@@ -116,7 +121,9 @@ pub(super) fn handle(
         }
         show_brush(&mut commands, entity, cursor, &sandbox, body, hit.filter(|_| tool == Tool::Paint));
     }
-    if !buttons.any_pressed([MouseButton::Left, MouseButton::Middle, MouseButton::Right]) && pointer.drag.take().is_some() {
+    if !buttons.any_pressed([MouseButton::Left, MouseButton::Middle, MouseButton::Right])
+        && pointer.drag.take().is_some()
+    {
         if let Some(open) = sandbox.open.as_mut().filter(|open| open.painting.is_painting()) {
             open.painting.end();
         }
@@ -133,7 +140,14 @@ pub(super) fn drop_files(mut files: MessageReader<FileDragAndDrop>, mut sandbox:
 }
 
 /// What lies under the pointer: the surface, or the ghost around it.
-fn pick(picker: &mut Picker, body: &Body, pose: Option<&Pose>, placement: &Placement, ray: Ray3d, ghost: bool) -> Option<Hit> {
+fn pick(
+    picker: &mut Picker,
+    body: &Body,
+    pose: Option<&Pose>,
+    placement: &Placement,
+    ray: Ray3d,
+    ghost: bool,
+) -> Option<Hit> {
     let on_surface = picker.pick(body, pose, placement, ray, Target::Surface);
     on_surface.or_else(|| ghost.then(|| picker.pick(body, pose, placement, ray, Target::Rest)).flatten())
 }
@@ -169,7 +183,14 @@ fn touch(sandbox: &mut Sandbox, body: &Body, hit: Option<Hit>, began: bool) {
     }
 }
 
-fn show_brush(commands: &mut Commands, entity: Entity, now: Option<&Cursor>, sandbox: &Sandbox, body: &Body, hit: Option<Hit>) {
+fn show_brush(
+    commands: &mut Commands,
+    entity: Entity,
+    now: Option<&Cursor>,
+    sandbox: &Sandbox,
+    body: &Body,
+    hit: Option<Hit>,
+) {
     let Some((hit, open)) = hit.zip(sandbox.open.as_ref()) else {
         if now.is_some() {
             commands.entity(entity).remove::<Cursor>();

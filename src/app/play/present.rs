@@ -10,7 +10,9 @@ use super::pointer::Viewport;
 use super::sandbox::{Look, Sandbox};
 use crate::panel::Compare;
 use crate::session::{Phase, Snapshot};
-use crate::view::{Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe};
+use crate::view::{
+    Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe,
+};
 
 /// The certified body.
 #[derive(Component)]
@@ -183,7 +185,11 @@ pub(super) fn looks(
         }
         if choice.ghost != has_ghost && !is_classic {
             let mut entity = commands.entity(entity);
-            if choice.ghost { entity.insert(Ghost::default()) } else { entity.remove::<Ghost>() };
+            if choice.ghost {
+                entity.insert(Ghost::default())
+            } else {
+                entity.remove::<Ghost>()
+            };
         }
     }
 }

@@ -65,12 +65,8 @@ fn is_same(a: &Path, b: &Path) -> bool {
 impl Order {
     fn report(&self) -> Report {
         let scene = &self.scene;
-        let settings = Settings {
-            resolution: scene.resolution,
-            fidelity: scene.fidelity,
-            keys: scene.keys,
-            reference: None,
-        };
+        let settings =
+            Settings { resolution: scene.resolution, fidelity: scene.fidelity, keys: scene.keys, reference: None };
         Report::of(scene, &settings, &self.stack, &self.outcome, self.warnings.clone())
     }
 }

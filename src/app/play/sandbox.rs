@@ -362,7 +362,9 @@ impl Sandbox {
 
     /// Keeps a copy of unsaved work, if there is any that has not been kept.
     pub fn autosave(&mut self) {
-        let Some(open) = self.open.as_ref().filter(|open| open.is_changed() && !open.painting.is_painting()) else { return };
+        let Some(open) = self.open.as_ref().filter(|open| open.is_changed() && !open.painting.is_painting()) else {
+            return;
+        };
         if self.kept == open.edition() || self.memory.can_restore() {
             return;
         }

@@ -19,9 +19,9 @@ use std::collections::VecDeque;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use bevy::input::ButtonState;
 use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::input::mouse::{MouseButtonInput, MouseScrollUnit, MouseWheel};
-use bevy::input::ButtonState;
 use bevy::prelude::*;
 use bevy::window::{CursorMoved, PrimaryWindow};
 
@@ -50,12 +50,7 @@ impl Script {
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
-        Ok(Self {
-            lines: lines.map(str::to_owned).collect(),
-            frames: 0,
-            waiting_since: None,
-            pointer: Vec2::ZERO,
-        })
+        Ok(Self { lines: lines.map(str::to_owned).collect(), frames: 0, waiting_since: None, pointer: Vec2::ZERO })
     }
 }
 
@@ -278,7 +273,9 @@ impl Stage<'_> {
         let met = match subject {
             "problem" => sandbox.problem.as_ref().is_some_and(|problem| problem.contains(value)),
             "calm" => sandbox.problem.is_none(),
-            "strokes" => sandbox.open.as_ref().map(|open| open.painting.edits().len().to_string()) == Some(value.into()),
+            "strokes" => {
+                sandbox.open.as_ref().map(|open| open.painting.edits().len().to_string()) == Some(value.into())
+            }
             "lambda" => {
                 let wanted: f32 = value.parse().map_err(|_| "expect lambda NUMBER")?;
                 (sandbox.choice.player.lambda() - wanted).abs() < 1e-3

@@ -43,7 +43,10 @@ pub(super) fn build(app: &mut App, size: [u32; 2], quality: Quality, unbound: bo
     .insert_resource(quality)
     .add_plugins(ViewPlugin);
     if unbound {
-        app.insert_resource(WinitSettings { focused_mode: UpdateMode::Continuous, unfocused_mode: UpdateMode::Continuous });
+        app.insert_resource(WinitSettings {
+            focused_mode: UpdateMode::Continuous,
+            unfocused_mode: UpdateMode::Continuous,
+        });
     } else {
         app.insert_resource(WinitSettings::desktop_app()).add_systems(Last, rhythm);
     }
@@ -134,7 +137,8 @@ fn panels(
     if !wishes.is_empty() {
         sandbox.wishes.extend(wishes);
     }
-    let wanted = Viewport { min: Vec2::new(middle.min.x, middle.min.y), size: Vec2::new(middle.width(), middle.height()) };
+    let wanted =
+        Viewport { min: Vec2::new(middle.min.x, middle.min.y), size: Vec2::new(middle.width(), middle.height()) };
     viewport.set_if_neq(wanted);
     let is_over = context.pointer_latest_pos().is_some_and(|at| {
         !middle.contains(at) || context.layer_id_at(at).is_some_and(|layer| layer.order != egui::Order::Background)
@@ -178,11 +182,13 @@ fn take_pictures(mut commands: Commands, mut sandbox: ResMut<Sandbox>) {
     }
     for path in std::mem::take(&mut sandbox.screenshots) {
         commands.spawn(Screenshot::primary_window()).observe(
-            move |captured: On<ScreenshotCaptured>, mut sandbox: ResMut<Sandbox>| {
-                match captured.image.clone().try_into_dynamic() {
-                    Ok(picture) => sandbox.write_picture(picture, path.clone()),
-                    Err(error) => sandbox.problem = Some(format!("{}: no picture could be taken: {error}", path.display())),
-                }
+            move |captured: On<ScreenshotCaptured>, mut sandbox: ResMut<Sandbox>| match captured
+                .image
+                .clone()
+                .try_into_dynamic()
+            {
+                Ok(picture) => sandbox.write_picture(picture, path.clone()),
+                Err(error) => sandbox.problem = Some(format!("{}: no picture could be taken: {error}", path.display())),
             },
         );
     }
