@@ -45,6 +45,7 @@ impl Display {
             .current_dir(folder)
             .env("DISPLAY", &self.number)
             .env("XDG_DATA_HOME", folder)
+            .env("XDG_RUNTIME_DIR", folder)
             .env_remove("WAYLAND_DISPLAY")
             .output()
             .unwrap()
@@ -207,6 +208,8 @@ fn without_a_display_it_says_so() {
     for display in [None, Some(":63")] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_homunculus"));
         command.arg("play").env_remove("WAYLAND_DISPLAY").env_remove("DISPLAY").env("XDG_DATA_HOME", folder.path());
+        // Without it the driver has something to say too.
+        command.env("XDG_RUNTIME_DIR", folder.path());
         if let Some(display) = display {
             command.env("DISPLAY", display);
         }
@@ -227,6 +230,7 @@ fn without_a_driver_it_names_the_package() {
         .env("VK_DRIVER_FILES", &nothing)
         .env("VK_ICD_FILENAMES", &nothing)
         .env("XDG_DATA_HOME", folder.path())
+        .env("XDG_RUNTIME_DIR", folder.path())
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
