@@ -6,16 +6,13 @@ use bevy::{
     pbr::{MaterialPipeline, MaterialPipelineKey},
     prelude::*,
     render::{
-        Render,
-        erased_render_asset::prepare_erased_assets,
-        render_asset::prepare_assets,
         render_resource::{AsBindGroup, Face, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError},
-        storage::{GpuShaderBuffer, ShaderBuffer},
+        storage::ShaderBuffer,
     },
     shader::{ShaderDefVal, ShaderRef},
 };
 
-use super::{Quality, drawn::Carrier, studio::ContactMaterial};
+use super::{Quality, drawn::Carrier};
 
 const STUDIO_SHADER: Handle<Shader> = uuid_handle!("0b6d7a5e-51f7-4f86-9d6e-6b1c2e0e7a01");
 const SURFACE_SHADER: Handle<Shader> = uuid_handle!("0b6d7a5e-51f7-4f86-9d6e-6b1c2e0e7a02");
@@ -33,19 +30,6 @@ pub(super) fn load_shaders(app: &mut App) {
     load_internal_asset!(app, BACKDROP_SHADER, "../../shaders/backdrop.wgsl", Shader::from_wgsl);
     load_internal_asset!(app, FLOOR_SHADER, "../../shaders/floor.wgsl", Shader::from_wgsl);
     load_internal_asset!(app, CONTACT_SHADER, "../../shaders/contact.wgsl", Shader::from_wgsl);
-}
-
-/// Lets materials wait for the buffers they are bound to, so that both can be new in one frame.
-pub(super) fn order(render: &mut SubApp) {
-    let buffers = prepare_assets::<GpuShaderBuffer>;
-    render.configure_sets(
-        Render,
-        (
-            prepare_erased_assets::<MeshMaterial3d<SurfaceMaterial>>.into_system_set(),
-            prepare_erased_assets::<MeshMaterial3d<ContactMaterial>>.into_system_set(),
-        )
-            .after(buffers),
-    );
 }
 
 /// What changes from frame to frame. `Shown` of the shader.

@@ -47,7 +47,7 @@ pub use pick::{Hit, Picker, Target};
 pub use size_legend::SizeLegend;
 pub use studio::{Backdrop, Studio};
 
-use bevy::{prelude::*, render::RenderApp};
+use bevy::prelude::*;
 
 /// Draws bodies, in a window or into an image. Add it after Bevy's own plugins; insert a [`Quality`] before, or the
 /// adapter's default is taken. Shaders come with the program: no file is needed beside it.
@@ -64,10 +64,6 @@ impl Plugin for ViewPlugin {
         studio::build(app);
         orbit::build(app);
         size_legend::build(app);
-        // Materials are bound to buffers made in the same frame.
-        if let Some(render) = app.get_sub_app_mut(RenderApp) {
-            material::order(render);
-        }
     }
 
     fn finish(&self, app: &mut App) {
