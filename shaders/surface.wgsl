@@ -173,7 +173,8 @@ fn brushed(rest: vec3<f32>) -> vec2<f32> {
     for (var k = 0u; k < shown.brushes; k += 1u) {
         let brush = shown.brush[k];
         let reach = distance(rest, brush.xyz) / brush.w;
-        let width = max(fwidth(reach), 1.0e-5);
+        // Where a triangle ends software drivers know no derivative; the line stays a line there.
+        let width = clamp(fwidth(reach), 1.0e-5, 0.06);
         ring = max(ring, 1.0 - smoothstep(0.8, 1.8, abs(reach - 1.0) / width));
         let soft = 1.0 - smoothstep(1.0 - shown.dab_softness, 1.0, reach);
         dab = max(dab, select(soft, 0.0, reach > 1.0));

@@ -141,6 +141,20 @@ fn cancelling_stops_and_resuming_goes_on() {
 }
 
 #[test]
+fn what_is_cancelled_before_it_began_waits_too() {
+    let (session, boundary) = open(20, 2.0);
+    wait(&session, |s| s.phase == Phase::Done);
+    session.set_importance(stack(&boundary, 3.0));
+    session.cancel();
+    let stopped = wait(&session, |s| s.phase == Phase::Stopped);
+    std::thread::sleep(Duration::from_millis(500));
+    assert_eq!(session.snapshot().version, stopped.version, "nothing happens");
+    session.resume();
+    let done = wait(&session, |s| s.phase == Phase::Done);
+    assert!(done.film_is_current && done.certificate.as_ref().unwrap().certified());
+}
+
+#[test]
 fn settings_and_subjects_replace_each_other() {
     let (session, boundary) = open(24, 2.0);
     wait(&session, |s| s.phase == Phase::Growing);

@@ -146,7 +146,7 @@ pub struct PlayOptions {
     #[arg(long, value_name = "FILE", hide = true)]
     pub script: Option<PathBuf>,
     /// Width and height of the window
-    #[arg(long, value_name = "W,H", hide = true, value_delimiter = ',', num_args = 2)]
+    #[arg(long, value_name = "W,H", hide = true, value_delimiter = ',')]
     pub size: Vec<u32>,
 }
 
@@ -180,7 +180,8 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Resu
         None => Order::Play(PlayOptions::default()),
         #[cfg(not(feature = "window"))]
         None => {
-            return Err(CommandLine::command().error(clap::error::ErrorKind::MissingSubcommand, "a command is missing"));
+            let kind = clap::error::ErrorKind::MissingSubcommand;
+            return Err(CommandLine::command().error(kind, "a command is missing"));
         }
         #[cfg(feature = "window")]
         Some(Face::Play(options)) => Order::Play(options),

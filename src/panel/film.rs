@@ -11,7 +11,7 @@ pub(super) fn show(root: &mut Ui, facts: &Facts, choice: &mut Choice, _: &mut [s
             ui.horizontal(|ui| {
                 let player = &mut choice.player;
                 let keys: Vec<f32> = film.iter().map(|state| state.lambda).collect();
-                if ui.button("⏮").on_hover_text("To the keyframe before  (←)").clicked() {
+                if ui.button("⏮").on_hover_text("To the keyframe before  (left)").clicked() {
                     player.step(&keys, false);
                 }
                 let (sign, hint) = if player.is_playing { ("⏸", "Pause  (space)") } else { ("▶", "Play  (space)") };
@@ -19,7 +19,7 @@ pub(super) fn show(root: &mut Ui, facts: &Facts, choice: &mut Choice, _: &mut [s
                 if ui.add(play).on_hover_text(hint).clicked() {
                     player.toggle();
                 }
-                if ui.button("⏭").on_hover_text("To the next keyframe  (→)").clicked() {
+                if ui.button("⏭").on_hover_text("To the next keyframe  (right)").clicked() {
                     player.step(&keys, true);
                 }
                 let readout = format!("λ {:.3}", player.lambda());

@@ -27,7 +27,7 @@ const KEYS: [(&str, &[(&str, &str)]); 4] = [
             ("Esc", "drop the stroke; stop solving"),
         ],
     ),
-    ("Film", &[("space", "play, pause"), ("←  →", "keyframe before, next"), ("Home  End", "rest, grown")]),
+    ("Film", &[("space", "play, pause"), ("left  right", "keyframe before, next"), ("Home  End", "rest, grown")]),
     (
         "Files",
         &[

@@ -41,9 +41,9 @@ pub fn apply(ctx: &Context) {
         .map(|(style, size, family)| (style, FontId::new(size, family)))
         .into();
         let spacing = &mut style.spacing;
-        spacing.item_spacing = Vec2::new(8.0, 6.0);
+        spacing.item_spacing = Vec2::new(8.0, 5.0);
         spacing.button_padding = Vec2::new(8.0, 3.0);
-        spacing.interact_size = Vec2::new(40.0, 24.0);
+        spacing.interact_size = Vec2::new(40.0, 22.0);
         spacing.slider_width = 118.0;
         spacing.combo_width = 96.0;
         spacing.icon_width = 16.0;
@@ -92,7 +92,11 @@ fn visuals() -> Visuals {
         state.expansion = 0.0;
     }
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, LINE);
-    widgets.inactive.bg_fill = Color32::from_rgb(0xd6, 0xda, 0xe0);
+    // Boxes to tick and the rails of sliders are told from the ground by their rim.
+    widgets.inactive.bg_fill = Color32::from_rgb(0xe3, 0xe6, 0xea);
+    widgets.inactive.bg_stroke = Stroke::new(1.0, Color32::from_rgb(0xc9, 0xce, 0xd6));
+    widgets.hovered.bg_stroke = Stroke::new(1.0, Color32::from_rgb(0xae, 0xb6, 0xc2));
+    widgets.active.bg_stroke = Stroke::new(1.0, ACCENT);
     visuals
 }
 
@@ -120,9 +124,8 @@ pub fn section(ui: &mut Ui, title: &str, content: impl FnOnce(&mut Ui)) {
     ui.label(RichText::new(title).heading().strong());
     ui.add_space(2.0);
     content(ui);
-    ui.add_space(10.0);
+    ui.add_space(6.0);
     ui.separator();
-    ui.add_space(4.0);
 }
 
 /// A part that can be folded away.
@@ -165,7 +168,8 @@ pub fn primary(ui: &mut Ui, text: &str) -> Response {
 pub fn choices<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, all: &[(T, &str, &str)]) -> bool {
     let before = *value;
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = Vec2::new(4.0, 4.0);
+        ui.spacing_mut().item_spacing = Vec2::new(3.0, 4.0);
+        ui.spacing_mut().button_padding.x = 6.0;
         for &(choice, name, hint) in all {
             let response = ui.selectable_value(value, choice, name);
             if !hint.is_empty() {

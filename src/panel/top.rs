@@ -173,7 +173,7 @@ pub(super) fn problem(ctx: &Context, facts: &Facts, middle: egui::Rect, wishes: 
     if let Some(problem) = facts.problem {
         line("problem", theme::RED, &mut |ui| {
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new("●").color(theme::RED));
+                ui.label(RichText::new("⚠").color(theme::RED));
                 ui.label(problem);
                 if ui.small_button("dismiss").clicked() {
                     wishes.push(Wish::Dismiss);

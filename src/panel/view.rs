@@ -7,6 +7,10 @@ use crate::view::{Axis, Legend, Mode, VoxelColour};
 
 pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     theme::section(ui, "View", |ui| {
+        let voxels = match choice.mode {
+            Mode::Voxels(_) => choice.mode,
+            _ => Mode::Voxels(VoxelColour::Importance),
+        };
         theme::choices(
             ui,
             &mut choice.mode,
@@ -14,10 +18,19 @@ pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
                 (Mode::Plain, "Plain", "The file's own colours, or grey"),
                 (Mode::Importance, "Importance", "Size asked for"),
                 (Mode::Fidelity, "Fidelity", "Size achieved over size asked"),
-                (Mode::Voxels(VoxelColour::Importance), "Voxels", "The complex, coloured by the size asked for"),
-                (Mode::Voxels(VoxelColour::Growth), "Voxels λ", "The complex, coloured by the size at λ"),
+                (voxels, "Voxels", "The cells the inside is made of"),
             ],
         );
+        if matches!(choice.mode, Mode::Voxels(_)) {
+            theme::row(ui, "Colour by", "What the cells are coloured by", |ui| {
+                let by = |colour| Mode::Voxels(colour);
+                let all = [
+                    (by(VoxelColour::Importance), "importance", "Size asked for in the end"),
+                    (by(VoxelColour::Growth), "λ", "Size asked for at λ"),
+                ];
+                theme::choices(ui, &mut choice.mode, &all);
+            });
+        }
         ui.add_space(2.0);
         ui.horizontal(|ui| {
             ui.checkbox(&mut choice.ghost, "Rest shape").on_hover_text("The shape before warping, translucent");
@@ -53,7 +66,9 @@ pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
 /// What colours mean, in the lower left corner of the view.
 pub(super) fn legend(ctx: &Context, facts: &Facts, middle: egui::Rect) {
     let Some(legend) = &facts.legend else { return };
-    let at = middle.left_bottom() + egui::vec2(16.0, -16.0);
+    // Above the line that says what went wrong or is being done.
+    let has_line = facts.problem.is_some() || facts.can_restore || facts.busy.is_some();
+    let at = middle.left_bottom() + egui::vec2(16.0, if has_line { -68.0 } else { -16.0 });
     egui::Area::new("legend".into())
         .order(egui::Order::Middle)
         .interactable(false)

@@ -88,12 +88,14 @@ struct Worker<'a> {
 impl Worker<'_> {
     /// How long to wait for orders before going on; `None` for ever.
     fn patience(&self) -> Option<Duration> {
-        match &self.job {
-            Some(Job::Solve(solve)) if solve.changed.is_some() => {
-                solve.changed.map(|at| at.saturating_duration_since(Instant::now()))
+        if !self.now.phase.is_busy() {
+            return None;
+        }
+        match self.job.as_ref()? {
+            Job::Solve(solve) => {
+                Some(solve.changed.map_or(Duration::ZERO, |at| at.saturating_duration_since(Instant::now())))
             }
-            Some(_) if self.now.phase.is_busy() => Some(Duration::ZERO),
-            _ => None,
+            Job::Voxelize => Some(Duration::ZERO),
         }
     }
 
@@ -208,7 +210,7 @@ impl Worker<'_> {
         let result = match &self.job {
             None => Ok(()),
             Some(Job::Voxelize) => self.prepare(),
-            Some(Job::Solve(solve)) if solve.changed.is_some() && self.now.phase != Phase::Stopped => self.adapt(),
+            Some(Job::Solve(solve)) if solve.changed.is_some() => self.adapt(),
             Some(Job::Solve(_)) if self.now.phase == Phase::Checking => self.finish(),
             Some(Job::Solve(_)) => self.iterate(),
         };

@@ -180,6 +180,7 @@ impl Material for ContactMaterial {
 }
 
 fn define(descriptor: &mut RenderPipelineDescriptor, name: &str, value: i32) {
+    descriptor.vertex.shader_defs.push(ShaderDefVal::Int(name.into(), value));
     if let Some(fragment) = &mut descriptor.fragment {
         fragment.shader_defs.push(ShaderDefVal::Int(name.into(), value));
     }

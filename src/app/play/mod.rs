@@ -58,7 +58,7 @@ impl Plugin for PlayPlugin {
             .add_systems(
                 Update,
                 (
-                    (keys::press, pointer::handle).chain().in_set(PlaySystems::Input),
+                    (keys::press, pointer::handle, pointer::drop_files).chain().in_set(PlaySystems::Input),
                     update.in_set(PlaySystems::Update),
                     (present::bodies, present::poses, present::looks, present::camera)
                         .chain()

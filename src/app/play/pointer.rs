@@ -2,7 +2,7 @@
 
 use bevy::input::mouse::{MouseScrollUnit, MouseWheel};
 use bevy::prelude::*;
-use bevy::window::CursorMoved;
+use bevy::window::{CursorMoved, FileDragAndDrop};
 
 use super::present::Shown;
 use super::sandbox::Sandbox;
@@ -126,6 +126,15 @@ pub(super) fn handle(
     {
         if let Some(open) = sandbox.open.as_mut().filter(|open| open.painting.is_painting()) {
             open.painting.end();
+        }
+    }
+}
+
+/// Files dropped on the window.
+pub(super) fn drop_files(mut files: MessageReader<FileDragAndDrop>, mut sandbox: ResMut<Sandbox>) {
+    for file in files.read() {
+        if let FileDragAndDrop::DroppedFile { path_buf, .. } = file {
+            sandbox.wishes.push(Wish::OpenPath(path_buf.clone()));
         }
     }
 }

@@ -31,6 +31,9 @@ pub(super) fn spawn_camera(mut commands: Commands, quality: Option<Res<Quality>>
     commands.spawn((Camera3d::default(), Tonemapping::None, Msaa::from_samples(samples), Orbit::default()));
 }
 
+/// Side of the reference cube that stands for ×1, view units.
+const REFERENCE: f32 = 0.06;
+
 /// A body for the lattice that is there; a second one where it is compared with.
 pub(super) fn bodies(
     mut commands: Commands,
@@ -68,9 +71,10 @@ pub(super) fn bodies(
         let (low, high) = lattice.boundary.bounds().unwrap_or_default();
         let frame = ViewFrame::of(&lattice.boundary);
         let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
-        // Before the feet, so that they hide nothing.
-        let at = Vec3::new(0.0, 0.0, high.z + 0.25 * (high.x - low.x).max(0.4));
-        commands.spawn(SizeLegend { unit: 0.08, is_flat: high.z <= low.z, at });
+        // Beside the feet, before them: there they hide nothing.
+        let row = REFERENCE * (SizeLegend::FACTORS.iter().sum::<f32>() + 3.0);
+        let at = Vec3::new(0.5 * (low.x + high.x) + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1);
+        commands.spawn(SizeLegend { unit: REFERENCE, is_flat: high.z <= low.z, at });
     }
 }
 
@@ -213,12 +217,17 @@ pub(super) fn camera(
     mut orbits: Query<&mut Orbit>,
     viewport: Res<Viewport>,
     time: Res<Time>,
+    mut framed: Local<Option<(Vec3, f32)>>,
 ) {
     let Ok(mut orbit) = orbits.single_mut() else { return };
     let mut wanted = *orbit;
     wanted.orthographic = sandbox.choice.orthographic;
     wanted.turntable = if sandbox.choice.turntable { TURNTABLE } else { 0.0 };
     wanted.turn(time.delta_secs());
+    // What was framed before it had grown is framed again when it has, unless the user has looked elsewhere since.
+    if sandbox.snapshot.phase == Phase::Done && framed.take() == Some((orbit.target, orbit.distance)) {
+        sandbox.looks.push(Look::Frame);
+    }
     if sandbox.snapshot.lattice.is_some() && !sandbox.looks.is_empty() {
         let sandbox = sandbox.bypass_change_detection();
         for look in std::mem::take(&mut sandbox.looks) {
@@ -227,6 +236,9 @@ pub(super) fn camera(
                 Look::Frame => {
                     let [low, high] = bounds(&sandbox.snapshot, sandbox.choice.compare == Compare::SideBySide);
                     wanted.frame(low, high, viewport.size.x / viewport.size.y.max(1.0));
+                    // Room for the legend and for what the eye wants around a thing.
+                    wanted.distance *= 1.12;
+                    *framed = (sandbox.snapshot.phase != Phase::Done).then_some((wanted.target, wanted.distance));
                 }
                 Look::At(place) => {
                     if let Some(lattice) = &sandbox.snapshot.lattice {
@@ -238,6 +250,7 @@ pub(super) fn camera(
         }
     }
     orbit.set_if_neq(wanted);
+    sandbox.bypass_change_detection().seen_from = wanted;
 }
 
 /// The box around what is shown, view space.

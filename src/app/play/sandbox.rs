@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::prelude::Resource;
 use glam::DVec3;
@@ -15,7 +16,7 @@ use crate::importance::Layer;
 use crate::panel::{Asked, Choice, Wish};
 use crate::scene::{Draft, Source};
 use crate::session::{Session, Snapshot, Subject};
-use crate::view::Axis;
+use crate::view::{Axis, Orbit};
 use crate::{Error, Result};
 
 /// Everything the window is about.
@@ -37,6 +38,10 @@ pub struct Sandbox {
     pub screenshots: Vec<PathBuf>,
     /// Files opened lately.
     pub memory: Memory,
+    /// From where the view is seen.
+    pub seen_from: Orbit,
+    /// Set when films that are being written are to stop.
+    stop: Arc<AtomicBool>,
     session: Session,
     tasks: Tasks,
     /// What the solver was told last.
@@ -77,6 +82,8 @@ impl Sandbox {
             looks: Vec::new(),
             screenshots: Vec::new(),
             memory: Memory::open(memory),
+            seen_from: Orbit::default(),
+            stop: Arc::default(),
             session: Session::start()?,
             tasks: Tasks::default(),
             told: None,
@@ -237,7 +244,11 @@ impl Sandbox {
             Wish::SetResolution(resolution) => return self.set(|draft| draft.resolution = resolution),
             Wish::SetFidelity(fidelity) => return self.set(|draft| draft.fidelity = fidelity),
             Wish::SetKeys(keys) => return self.set(|draft| draft.keys = keys),
-            Wish::Cancel => self.session.cancel(),
+            Wish::Cancel => {
+                self.session.cancel();
+                // Those that run keep the old one, which is set; later ones get a new one.
+                std::mem::take(&mut self.stop).store(true, Ordering::Relaxed);
+            }
             Wish::Resume => self.session.resume(),
             Wish::Frame => self.looks.push(Look::Frame),
             Wish::LookFrom(axis) => self.looks.push(Look::From(axis)),
@@ -312,8 +323,11 @@ impl Sandbox {
             stack: Arc::new(open.painting.stack()),
             boundary: open.painting.under().boundary.clone(),
             outcome: outcome.clone(),
+            snapshot: self.snapshot.clone(),
             warnings: open.warnings.clone(),
-            export: self.choice.export.clone(),
+            choice: self.choice.clone(),
+            seen_from: self.seen_from,
+            stop: self.stop.clone(),
         };
         self.tasks.start(format!("writing {}", order.path.display()), move || Done::Written(results::write(&order)));
         Ok(())

@@ -1,4 +1,4 @@
-//! The window: panels, the viewport between them, files dropped on it, pictures of it, and the rhythm of frames.
+//! The window: panels, the viewport between them, pictures of it, and the rhythm of frames.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ use bevy::log::LogPlugin;
 use bevy::prelude::*;
 use bevy::render::render_resource::BlendState;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
-use bevy::window::{FileDragAndDrop, PresentMode, PrimaryWindow};
+use bevy::window::{PresentMode, PrimaryWindow};
 use bevy::winit::{UpdateMode, WinitSettings};
 use bevy_egui::{EguiContexts, EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass, PrimaryEguiContext, egui};
 
@@ -18,7 +18,7 @@ use super::keys::KeysOnPanel;
 use super::pointer::{PointerOnPanel, Viewport};
 use super::present::Shown;
 use super::sandbox::Sandbox;
-use crate::panel::{self, Facts, Wish, theme};
+use crate::panel::{self, Facts, theme};
 use crate::session::Snapshot;
 use crate::view::{Legend, Looks, Orbit, Quality, ViewPlugin};
 
@@ -60,7 +60,7 @@ impl Plugin for WindowPluginOfPlay {
         app.init_resource::<KeysOnPanel>()
             .add_systems(PreStartup, spawn_panel_camera)
             .add_systems(EguiPrimaryContextPass, panels)
-            .add_systems(Update, (drop_files, name_window).in_set(PlaySystems::Update))
+            .add_systems(Update, name_window.in_set(PlaySystems::Update))
             .add_systems(Update, (place_viewport, take_pictures).after(PlaySystems::Present))
             .add_systems(Last, (autosave, close));
     }
@@ -128,7 +128,7 @@ fn panels(
         problem: sandbox.problem.as_deref(),
         warnings: sandbox.open.as_ref().map_or(&[], |open| &open.warnings),
         can_restore: sandbox.memory.can_restore(),
-        can_record: false,
+        can_record: cfg!(feature = "record"),
     };
     let middle = panel::draw(&mut root, &facts, &mut choice, &mut wishes);
     if sandbox.choice != choice {
@@ -165,14 +165,6 @@ fn place_viewport(
     let is_same = camera.viewport.as_ref().is_some_and(|v| v.physical_position == corner && v.physical_size == size);
     if !is_same {
         camera.viewport = Some(CameraViewport { physical_position: corner, physical_size: size, ..default() });
-    }
-}
-
-fn drop_files(mut files: MessageReader<FileDragAndDrop>, mut sandbox: ResMut<Sandbox>) {
-    for file in files.read() {
-        if let FileDragAndDrop::DroppedFile { path_buf, .. } = file {
-            sandbox.wishes.push(Wish::OpenPath(path_buf.clone()));
-        }
     }
 }
 
