@@ -159,16 +159,6 @@ fn settings(scene: &Scene, options: &SceneOptions) -> Settings {
     }
 }
 
-/// A scene's boundary with what its layers know of it, and their importance: all but the strokes.
-pub(super) fn prepare(scene: &Scene, mut boundary: Boundary) -> Result<(Boundary, Stack)> {
-    let layers = layers(scene, &mut boundary)?;
-    let stack = Stack::load(&layers, scene.base, scene.clamp, &boundary, Path::new(""))?;
-    if let Some(regions) = stack.regions() {
-        boundary.regions = Some(regions.clone());
-    }
-    Ok((boundary, stack))
-}
-
 /// The boundary a source names. A built-in scene brings its importance as the vertex attribute [`OWN`].
 pub(super) fn open(source: &Source) -> Result<Boundary> {
     match source {

@@ -141,14 +141,15 @@ mod film {
         let Some(((lattice, linear), importance)) = parts else {
             return Err(Error::Fault("a solve that is done lacks its lattice".into()));
         };
-        let (complex, binding) = ((*lattice.complex).clone(), (*lattice.binding).clone());
-        let shells = vec![Shell::skin(&complex), Shell::boundary(&order.boundary, binding.clone(), &complex)];
+        let (complex, binding) = (lattice.complex.clone(), lattice.binding.clone());
+        let shells = vec![Shell::skin(&complex), Shell::boundary(&order.boundary, (*binding).clone(), &complex)];
         let mut film = Film::default();
         for state in &snapshot.film {
             let (positions, certificate) = ((*state.positions).clone(), state.certificate.clone());
-            film.push(Keyframe { lambda: state.lambda, positions, certificate });
+            film.push(Keyframe { lambda: state.lambda, positions, certificate, way_is_clear: false });
         }
         let (linear, importance) = ((**linear).clone(), (**importance).clone());
-        Ok(Solved { complex, binding, shells, film, linear, importance, outcome: Outcome::clone(&order.outcome) })
+        let (boundary, outcome) = (order.boundary.clone(), Outcome::clone(&order.outcome));
+        Ok(Solved { boundary, complex, binding, shells, film, linear, importance, outcome })
     }
 }
