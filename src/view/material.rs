@@ -6,7 +6,7 @@ use bevy::{
     pbr::{MaterialPipeline, MaterialPipelineKey},
     prelude::*,
     render::{
-        Render,
+        Render, RenderSystems,
         erased_render_asset::prepare_erased_assets,
         render_asset::prepare_assets,
         render_resource::{AsBindGroup, Face, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError},
@@ -37,16 +37,18 @@ pub(super) fn load_shaders(app: &mut App) {
 
 /// Lets materials wait for the buffers they are bound to, so that both can be new in one frame.
 pub(super) fn order(render: &mut SubApp) {
-    let buffers = prepare_assets::<GpuShaderBuffer>;
-    render.configure_sets(
+    // Orders through a system of our own: those of others cannot be configured.
+    render.add_systems(
         Render,
-        (
-            prepare_erased_assets::<MeshMaterial3d<SurfaceMaterial>>.into_system_set(),
-            prepare_erased_assets::<MeshMaterial3d<ContactMaterial>>.into_system_set(),
-        )
-            .after(buffers),
+        buffers_are_there
+            .in_set(RenderSystems::PrepareAssets)
+            .after(prepare_assets::<GpuShaderBuffer>)
+            .before(prepare_erased_assets::<MeshMaterial3d<SurfaceMaterial>>)
+            .before(prepare_erased_assets::<MeshMaterial3d<ContactMaterial>>),
     );
 }
+
+fn buffers_are_there() {}
 
 /// What changes from frame to frame. `Shown` of the shader.
 #[derive(ShaderType, Debug, Clone, PartialEq)]
