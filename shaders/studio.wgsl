@@ -9,11 +9,7 @@
     view, lights, directional_shadow_textures, directional_shadow_textures_comparison_sampler,
 }
 
-#ifdef SHADOW_TAPS
 const TAPS: i32 = #{SHADOW_TAPS};
-#else
-const TAPS: i32 = 1;
-#endif
 
 struct Surface {
     position: vec3<f32>,
