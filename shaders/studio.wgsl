@@ -9,6 +9,8 @@
     view, lights, directional_shadow_textures, directional_shadow_textures_comparison_sampler,
 }
 
+const TAPS: i32 = #{SHADOW_TAPS};
+
 struct Surface {
     position: vec3<f32>,
     // Unit, towards the viewer.
@@ -57,14 +59,14 @@ fn key_shadow(position: vec3<f32>, normal: vec3<f32>, spread: f32) -> f32 {
     let radius = spread / (texel * f32(textureDimensions(directional_shadow_textures).x));
     let layer = i32((*light).depth_texture_base_index);
     var sum = 0.0;
-    for (var k = 0; k < #{SHADOW_TAPS}; k += 1) {
+    for (var k = 0; k < TAPS; k += 1) {
         let angle = 2.399963 * f32(k);
-        let offset = radius * sqrt((f32(k) + 0.5) / f32(#{SHADOW_TAPS})) * vec2(cos(angle), sin(angle));
+        let offset = radius * sqrt((f32(k) + 0.5) / f32(TAPS)) * vec2(cos(angle), sin(angle));
         sum += textureSampleCompareLevel(
             directional_shadow_textures, directional_shadow_textures_comparison_sampler, uv + offset, layer, ndc.z,
         );
     }
-    return sum / f32(#{SHADOW_TAPS});
+    return sum / f32(TAPS);
 }
 
 fn specular(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>, roughness: f32) -> f32 {

@@ -117,6 +117,10 @@ struct Vertex {
 #ifdef VERTEX_UVS_A
     @location(2) uv: vec2<f32>,
 #endif
+#ifdef VERTEX_UVS_B
+    // How much of the room is seen.
+    @location(3) openness: vec2<f32>,
+#endif
 #ifdef VERTEX_COLORS
     @location(5) colour: vec4<f32>,
 #endif
@@ -129,8 +133,9 @@ struct VertexOutput {
     @location(2) rest: vec3<f32>,
     @location(3) uv: vec2<f32>,
     @location(4) field: vec2<f32>,
+    @location(5) openness: f32,
 #ifdef VERTEX_COLORS
-    @location(5) colour: vec4<f32>,
+    @location(6) colour: vec4<f32>,
 #endif
 }
 
@@ -153,6 +158,11 @@ fn vertex(vertex: Vertex) -> VertexOutput {
 #ifdef HAS_FIELD
     out.field = field[row];
 #endif
+#ifdef VERTEX_UVS_B
+    out.openness = vertex.openness.x;
+#else
+    out.openness = 1.0;
+#endif
 #ifdef VERTEX_COLORS
     out.colour = vertex.colour;
 #endif
@@ -166,18 +176,16 @@ fn mapped(place: f32) -> vec3<f32> {
     return mix(colour_map[low].rgb, colour_map[min(low + 1u, u32(last))].rgb, fract(at));
 }
 
-// How much of the brush's ring and dab a place of the rest shape gets.
-fn brushed(rest: vec3<f32>) -> vec2<f32> {
+// How much of the brush's ring and dab a place of the rest shape gets; `pixel` is the length of a pixel there.
+fn brushed(rest: vec3<f32>, pixel: f32) -> vec2<f32> {
     var ring = 0.0;
     var dab = 0.0;
     for (var k = 0u; k < shown.brushes; k += 1u) {
         let brush = shown.brush[k];
-        let reach = distance(rest, brush.xyz) / brush.w;
-        // Where a triangle ends software drivers know no derivative; the line stays a line there.
-        let width = clamp(fwidth(reach), 1.0e-5, 0.06);
-        ring = max(ring, 1.0 - smoothstep(0.8, 1.8, abs(reach - 1.0) / width));
-        let soft = 1.0 - smoothstep(1.0 - shown.dab_softness, 1.0, reach);
-        dab = max(dab, select(soft, 0.0, reach > 1.0));
+        let away = distance(rest, brush.xyz);
+        ring = max(ring, 1.0 - smoothstep(0.8, 1.8, abs(away - brush.w) / pixel));
+        let soft = 1.0 - smoothstep(1.0 - shown.dab_softness, 1.0, away / brush.w);
+        dab = max(dab, select(soft, 0.0, away > brush.w));
     }
     return vec2(ring, dab * shown.dab_strength);
 }
@@ -214,7 +222,8 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
     }
 #endif
 
-    let brush = brushed(in.rest);
+    let pixel = max(length(fwidth(in.rest)), 1.0e-6);
+    let brush = brushed(in.rest, pixel);
 #ifdef UNLIT
     var lit = colour.rgb;
     lit = mix(lit, shown.dab_colour.rgb, 0.75 * brush.y);
@@ -229,7 +238,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
     surface.albedo = colour.rgb;
     surface.roughness = base.roughness;
     surface.metallic = base.metallic;
-    surface.openness = 1.0;
+    surface.openness = in.openness;
 
 #ifdef GHOST
     // A shell of glass: clear where it is looked through, denser towards its rim.

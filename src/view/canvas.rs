@@ -6,7 +6,7 @@ use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, prelude
 use glam::Vec3A;
 
 use super::{
-    Body, Looks, Mode, Quality, ViewFrame,
+    Body, Extent, Looks, Mode, Quality, ViewFrame,
     colours::ENTRIES,
     contact::REACH,
     drawn::{Part, Rows},
@@ -35,8 +35,8 @@ pub(super) struct Canvas {
     pub rest: Arc<Vec<Vec3A>>,
     nothing: Handle<ShaderBuffer>,
     colour_map: Handle<ShaderBuffer>,
-    /// Box around what is drawn, view space.
-    pub bounds: [Vec3; 2],
+    /// Box around what is drawn, without the placement.
+    pub extent: Extent,
 }
 
 /// Rows with their buffers, and the parts drawn from them.
@@ -82,7 +82,7 @@ impl Canvas {
             blocks: None,
             ghost: Vec::new(),
             contact: None,
-            bounds: state.bounds,
+            extent: state.extent,
             states: vec![state],
             rest,
             colour_map: nothing.clone(),
@@ -188,7 +188,7 @@ impl Canvas {
         self.states.retain(State::is_alive);
         let pair = [from, to].map(|state| self.state(body, state, easel));
         let [from, to] = pair.map(|k| &self.states[k]);
-        self.bounds = [from.bounds[0].min(to.bounds[0]), from.bounds[1].max(to.bounds[1])];
+        self.extent = from.extent.union(to.extent);
         let layers = std::iter::once((&self.surface, false)).chain(self.blocks.as_ref().map(|layer| (layer, true)));
         for (layer, is_blocks) in layers {
             let sheet = |state: &State| if is_blocks { state.blocks.clone() } else { Some(state.surface.clone()) };

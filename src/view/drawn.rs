@@ -9,7 +9,7 @@ use bevy::{
 use glam::{Mat3A, Vec3A};
 use rayon::prelude::*;
 
-use super::{Body, ViewFrame, normals};
+use super::{Body, ViewFrame, normals, openness};
 use crate::{
     boundary::source::NONE,
     export::{normals::Smoothing, table::Table},
@@ -50,7 +50,7 @@ pub(super) struct Rows {
 impl Rows {
     /// The boundary's surface, split where texture coordinates or hard edges split it, and by material.
     pub fn of_surface(body: &Body, frame: &ViewFrame) -> (Self, Vec<Part>) {
-        let boundary = &body.boundary;
+        let (boundary, complex) = (&body.boundary, &body.complex);
         let smoothing = Smoothing::new(boundary);
         let table = Table::new(boundary, &smoothing);
         let class_normals = smoothing.normals(&boundary.triangles, &boundary.positions);
@@ -91,6 +91,11 @@ impl Rows {
                 let uv = |r| source.uvs.get(at(r).uv as usize).copied().unwrap_or_default();
                 mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, here.iter().map(uv).collect::<Vec<Vec2>>());
             }
+            let place = |r| complex.grid.lattice_from_source(boundary.positions[at(r).vertex as usize]).as_vec3a();
+            let normal = |r| class_normals.get(at(r).class as usize).map_or(Vec3A::Z, |&n| n.into());
+            let places: Vec<(Vec3A, Vec3A)> = here.iter().map(|r| (place(r), normal(r))).collect();
+            let seen = openness::openness(complex, &places);
+            mesh.insert_attribute(Mesh::ATTRIBUTE_UV_1, seen.iter().map(|&s| Vec2::new(s, 0.0)).collect::<Vec<Vec2>>());
             if let Some(colours) = &colours {
                 let colour: Vec<[f32; 4]> = here.iter().map(|r| colours[at(r).vertex as usize]).collect();
                 mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colour);

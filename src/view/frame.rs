@@ -55,6 +55,28 @@ impl ViewFrame {
     }
 }
 
+/// The box around a body in the states it is shown in, view space, its [`Placement`] included. On the entity of every
+/// [`Body`](super::Body) after its first frame; [`extent`](super::extent) gives the same for any states.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// Lowest corner.
+    pub low: Vec3,
+    /// Highest corner.
+    pub high: Vec3,
+}
+
+impl Extent {
+    /// The box around both.
+    pub fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// The same box elsewhere.
+    pub fn moved(self, offset: Vec3) -> Self {
+        Self { low: self.low + offset, high: self.high + offset }
+    }
+}
+
 /// Where a body stands: moved by `offset` in view space. Two bodies side by side have two placements.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Default)]
 pub struct Placement {

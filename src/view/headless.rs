@@ -58,6 +58,8 @@ pub struct Renderer {
     target: Handle<Image>,
     size: [u32; 2],
     supersampling: u32,
+    /// Updates before the next frame counts.
+    warming: usize,
 }
 
 /// Draws over each frame.
@@ -69,6 +71,9 @@ struct Overlay(Option<Draw>);
 
 /// Updates without a frame after which the driver is given up: shaders are compiled in the first few.
 const MOST_UPDATES: usize = 100;
+
+/// Updates until a new overlay is laid out: fonts, sizes.
+const OVERLAY_UPDATES: usize = 2;
 
 /// What the clock advances by for each frame.
 const TICK: Duration = Duration::from_millis(16);
@@ -124,7 +129,7 @@ impl Renderer {
         if quality.samples == 1 && supersampling == 1 {
             app.world_mut().entity_mut(camera).insert(Fxaa::default());
         }
-        Ok(Self { app, camera, target, size, supersampling })
+        Ok(Self { app, camera, target, size, supersampling, warming: 0 })
     }
 
     /// Adds a body; its entity takes new [`Pose`]s, [`Looks`] and so on through [`Renderer::world_mut`].
@@ -158,9 +163,13 @@ impl Renderer {
     }
 
     /// Draws panels, titles and legends over every following frame: runs once a frame in the camera's egui context, whose
-    /// points are pixels. Replaces an earlier one.
+    /// points are pixels of the picture. Replaces an earlier one.
+    ///
+    /// egui lays areas and windows out in their first frame and shows them in the next; two frames are run for that here.
+    /// What changes its size later is late by one frame: paint that with `Context::layer_painter`.
     pub fn overlay(&mut self, draw: impl FnMut(&egui::Context) + Send + Sync + 'static) {
         self.app.insert_resource(Overlay(Some(Box::new(draw))));
+        self.warming = OVERLAY_UPDATES;
     }
 
     /// The next picture: everything as it is now. Alpha is straight, and 255 unless the backdrop is
@@ -171,7 +180,9 @@ impl Renderer {
     pub fn frame(&mut self) -> Result<RgbaImage> {
         for _ in 0..MOST_UPDATES {
             self.app.update();
-            if self.is_drawn()? {
+            if self.warming > 0 {
+                self.warming -= 1;
+            } else if self.is_drawn()? {
                 let pixels = self.read()?;
                 return Ok(self.finished(pixels));
             }

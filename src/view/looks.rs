@@ -160,7 +160,17 @@ fn ticks([low, high]: [f32; 2]) -> Vec<f32> {
         return [low / 0.999, 1.0, high / 1.001].into_iter().filter(|v| (low..=high).contains(v)).collect();
     }
     let every = if high / low > 100.0 { 4.0_f32 } else { 2.0 };
-    (-10..=10).map(|k| every.powi(k)).filter(|v| (low..=high).contains(v)).collect()
+    let mut ticks: Vec<f32> = (-10..=10).map(|k| every.powi(k)).filter(|v| (low..=high).contains(v)).collect();
+    // The ends too, where there is room for them.
+    let room = 0.12 * (high / low).ln();
+    let (low, high) = (low / 0.999, high / 1.001);
+    if ticks.first().is_none_or(|first| (first / low).ln() > room) {
+        ticks.insert(0, low);
+    }
+    if ticks.last().is_none_or(|last| (high / last).ln() > room) {
+        ticks.push(high);
+    }
+    ticks
 }
 
 /// `×2`, `×½`, `×1.25`.
@@ -192,8 +202,8 @@ mod tests {
         let at_one = legend.stops.iter().min_by(|a, b| a.0.ln().abs().total_cmp(&b.0.ln().abs())).expect("stops");
         assert!(at_one.1[0].abs_diff(at_one.1[2]) < 16, "{at_one:?}");
         let ticks: Vec<&str> = legend.ticks.iter().map(|t| t.1.as_str()).collect();
-        assert_eq!(ticks, ["×½", "×1", "×2", "×4"]);
-        let [half, one, two] = [0, 1, 2].map(|k| legend.ticks[k].0);
+        assert_eq!(ticks, ["×¼", "×½", "×1", "×2", "×4", "×6"]);
+        let [half, one, two] = [1, 2, 3].map(|k| legend.ticks[k].0);
         assert!((one - half - (two - one)).abs() < 1e-5);
         assert!(legend.ticks.iter().all(|t| (0.0..=1.0).contains(&t.0)));
     }

@@ -5,7 +5,7 @@ use bevy::{
 };
 
 use super::{
-    Body, Cursor, Ghost, Looks, Picker, Placement, Pose, Quality, ViewSystems,
+    Body, Cursor, Extent, Ghost, Looks, Picker, Placement, Pose, Quality, ViewSystems,
     canvas::{Canvas, Easel},
     material::{MOST_BRUSHES, Shown, SurfaceMaterial},
     studio::ContactMaterial,
@@ -21,7 +21,7 @@ pub(super) fn add_systems(app: &mut App) {
             .before(VisibilitySystems::CalculateBounds)
             .before(AssetEventSystems),
     )
-    .add_systems(PostUpdate, (prepare, place, dress, pose, haunt, write).chain().in_set(ViewSystems::Present));
+    .add_systems(PostUpdate, (prepare, place, dress, pose, measure, haunt, write).chain().in_set(ViewSystems::Present));
 }
 
 /// Everything a canvas is painted with.
@@ -86,6 +86,16 @@ fn pose(mut bodies: Query<(&Body, Option<&Pose>, &mut Canvas)>, mut easels: Ease
     }
 }
 
+/// Tells how far each body reaches.
+pub(super) fn measure(mut commands: Commands, bodies: Query<(Entity, &Placement, &Canvas, Option<&Extent>)>) {
+    for (entity, placement, canvas, known) in &bodies {
+        let extent = canvas.extent.moved(placement.offset);
+        if known != Some(&extent) {
+            commands.entity(entity).insert(extent);
+        }
+    }
+}
+
 fn haunt(mut commands: Commands, mut bodies: Query<(Entity, Ref<Body>, Has<Ghost>, &mut Canvas)>, mut easels: Easels) {
     for (entity, body, is_wanted, mut canvas) in &mut bodies {
         if is_wanted && (canvas.ghost.is_empty() || body.is_changed()) {
@@ -131,9 +141,4 @@ fn brush(shown: &mut Shown, cursor: &Cursor, looks: &Looks) {
         shown.dab_strength = dab.strength.clamp(0.0, 1.0);
         shown.dab_softness = dab.softness.clamp(0.0, 1.0);
     }
-}
-
-/// The box around everything drawn, view space.
-pub(super) fn scene_bounds(bodies: impl Iterator<Item = (Vec3, [Vec3; 2])>) -> Option<[Vec3; 2]> {
-    bodies.map(|(offset, [low, high])| [low + offset, high + offset]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }

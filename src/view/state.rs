@@ -6,7 +6,7 @@ use bevy::{prelude::*, render::storage::ShaderBuffer};
 use glam::Vec3A;
 use rayon::prelude::*;
 
-use super::{Body, ViewFrame, contact, drawn::Rows, normals};
+use super::{Body, Extent, ViewFrame, contact, drawn::Rows, normals};
 
 /// Vertices per parallel task.
 const VERTICES_PER_TASK: usize = 4096;
@@ -21,8 +21,8 @@ pub(super) struct State {
     pub blocks: Option<Sheet>,
     /// What the body takes of the room's light from the floor.
     pub shade: Handle<ShaderBuffer>,
-    /// Box around the surface, view space.
-    pub bounds: [Vec3; 2],
+    /// Box around the surface, without the placement.
+    pub extent: Extent,
     /// Added to y so that the body stands on the floor.
     lift: f32,
 }
@@ -61,6 +61,22 @@ pub(super) fn placed(body: &Body, frame: &ViewFrame, state: &[Vec3A]) -> Placed 
     Placed { positions, lift }
 }
 
+/// The box around a body in some states, view space, without a placement: what a camera frames to see a whole film.
+///
+/// States of another complex than the body's are left out; of no states at all it is a box of side 2.
+pub fn extent<'a>(body: &Body, states: impl IntoIterator<Item = &'a [Vec3A]>) -> Extent {
+    let frame = ViewFrame::of(&body.boundary);
+    let fitting = states.into_iter().filter(|state| state.len() == body.complex.nodes());
+    let boxes = fitting.map(|state| extent_of(body, &placed(body, &frame, state).positions));
+    boxes.reduce(Extent::union).unwrap_or(Extent { low: Vec3::NEG_ONE, high: Vec3::ONE })
+}
+
+fn extent_of(body: &Body, positions: &[Vec3A]) -> Extent {
+    let used = body.boundary.triangles.iter().flatten().map(|&v| positions[v as usize]);
+    let (low, high) = used.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    Extent { low: low.into(), high: high.into() }
+}
+
 /// The lowest y of what triangles use.
 fn lowest(body: &Body, positions: &[Vec3A]) -> f32 {
     let lowest =
@@ -88,8 +104,7 @@ impl State {
         buffers: &mut Assets<ShaderBuffer>,
     ) -> Self {
         let Placed { positions, lift } = placed(body, frame, state);
-        let used = body.boundary.triangles.iter().flatten().map(|&v| positions[v as usize]);
-        let (low, high) = used.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let extent = extent_of(body, &positions);
         let gradients = normals::gradients(&body.complex, state);
         let displacements = body.binding.displacements(state);
         let surface = Sheet {
@@ -102,7 +117,7 @@ impl State {
             surface,
             blocks: None,
             shade: buffers.add(ShaderBuffer::from(shade)),
-            bounds: [low.into(), high.into()],
+            extent,
             lift,
         }
     }

@@ -15,11 +15,9 @@ use bevy::{
 };
 
 use super::{
-    Body, Orbit, Placement, Quality, ViewSystems,
-    canvas::Canvas,
-    contact,
+    Body, Extent, Orbit, Quality, ViewSystems, contact,
     material::{BACKDROP_SHADER, CONTACT_SHADER, FLOOR_SHADER},
-    present::scene_bounds,
+    present::measure,
 };
 
 /// What stands around the bodies. A resource; change it at any time.
@@ -135,7 +133,7 @@ impl Material for FloorMaterial {
         _: &MeshVertexBufferLayoutRef,
         key: MaterialPipelineKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        define(descriptor, "SHADOW_TAPS", key.bind_group_data.0.max(1) as i32);
+        define(descriptor, "SHADOW_TAPS", 2 * key.bind_group_data.0.max(1) as i32);
         Ok(())
     }
 }
@@ -180,9 +178,10 @@ impl Material for ContactMaterial {
 }
 
 fn define(descriptor: &mut RenderPipelineDescriptor, name: &str, value: i32) {
-    descriptor.vertex.shader_defs.push(ShaderDefVal::Int(name.into(), value));
+    let define = ShaderDefVal::Int(name.into(), value);
+    descriptor.vertex.shader_defs.push(define.clone());
     if let Some(fragment) = &mut descriptor.fragment {
-        fragment.shader_defs.push(ShaderDefVal::Int(name.into(), value));
+        fragment.shader_defs.push(define);
     }
 }
 
@@ -207,7 +206,7 @@ pub(super) fn build(app: &mut App) {
     ))
     .init_resource::<Studio>()
     .add_systems(Startup, set_up)
-    .add_systems(PostUpdate, (furnish, aim).chain().in_set(ViewSystems::Present));
+    .add_systems(PostUpdate, (furnish, aim.after(measure)).chain().in_set(ViewSystems::Present));
 }
 
 fn set_up(
@@ -284,12 +283,12 @@ fn furnish(
 /// point from the camera.
 fn aim(
     cameras: Query<&Orbit, With<Camera3d>>,
-    bodies: Query<(&Placement, &Canvas), With<Body>>,
+    bodies: Query<&Extent, With<Body>>,
     mut keys: Query<(&mut Transform, &mut bevy::light::CascadeShadowConfig), With<Key>>,
 ) {
     let Some(orbit) = cameras.iter().next() else { return };
     let yaw = Quat::from_rotation_y(orbit.yaw);
-    let Some([low, high]) = scene_bounds(bodies.iter().map(|(p, canvas)| (p.offset, canvas.bounds))) else { return };
+    let Some(Extent { low, high }) = bodies.iter().copied().reduce(Extent::union) else { return };
     let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
     let along = (centre - orbit.eye()).dot(orbit.rotation() * Vec3::NEG_Z);
     for (mut transform, mut cascades) in &mut keys {
