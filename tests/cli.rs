@@ -126,7 +126,7 @@ fn a_colon_may_be_part_of_a_name() {
 fn each_bad_option_is_refused_in_words() {
     let cases = [
         ("", "required"),
-        ("a.obj --sphere 1,2,3,4", "five numbers"),
+        ("a.obj --sphere 1,2,3", "five numbers"),
         ("a.obj --sphere 1,2,3,4,x", "`x` is not a number"),
         ("a.obj --sphere 1,2,nan,4,1", "not finite"),
         ("a.obj --sphere 1,2,3,0,1", "radius"),

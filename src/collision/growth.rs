@@ -38,11 +38,31 @@ const LEAP_SETTLING: [u32; 2] = [4, 8];
 /// At λ = 1 the state is settled when no node moves further than this in an iteration, in cells.
 const SETTLED_MOTION: f32 = 0.02;
 
+/// How fast a growth is walked.
+#[derive(Debug, Clone, Copy)]
+struct Pace {
+    /// Steps of λ at the least.
+    steps: usize,
+    /// Relative size change of a step at most, as `ln` of the largest factor.
+    ln_size: f32,
+    /// Iterations at each λ below 1: on the way, and where the state becomes a keyframe.
+    iterations: [u32; 2],
+}
+
+/// In space.
+const BODY: Pace = Pace { steps: LEAST_STEPS, ln_size: LN_SIZE_PER_STEP, iterations: ITERATIONS_PER_STEP };
+
+/// In the plane, where large parts flow far at every λ: in steps half as long, each brought nearer to rest. A population
+/// cartogram locked in folded cells at the pace of bodies.
+const PICTURE: Pace = Pace { steps: 48, ln_size: 0.06, iterations: [4, 6] };
+
 /// Where the growth is.
 #[derive(Debug, Clone)]
 pub struct Growth {
     /// λ of each step, ascending, the last 1.
     steps: Vec<f32>,
+    /// Iterations at each λ below 1: on the way, and where the state becomes a keyframe.
+    iterations: [u32; 2],
     /// λ of keyframes are multiples of 1 / keys.
     keys: usize,
     step: usize,
@@ -68,13 +88,17 @@ fn ln_change(range: [f32; 2], a: f32, b: f32) -> f32 {
 impl Growth {
     /// Plans the steps for importance in `low..=high`: at least `keys` equal ones, cut where sizes change fast.
     pub fn plan(keys: usize, low: f32, high: f32) -> Self {
-        let count = LEAST_STEPS.div_ceil(keys.max(1)) * keys.max(1);
+        Self::paced(BODY, keys, low, high)
+    }
+
+    fn paced(pace: Pace, keys: usize, low: f32, high: f32) -> Self {
+        let count = pace.steps.div_ceil(keys.max(1)) * keys.max(1);
         let ln_size = |lambda: f32, f: f32| (1.0 + lambda * (f - 1.0)).ln();
         let mut steps = Vec::new();
         for k in 0..count {
             let (a, b) = (k as f32 / count as f32, (k + 1) as f32 / count as f32);
             let change = [low, high].map(|f| (ln_size(b, f) - ln_size(a, f)).abs());
-            let cuts = (change[0].max(change[1]) / LN_SIZE_PER_STEP).ceil().max(1.0);
+            let cuts = (change[0].max(change[1]) / pace.ln_size).ceil().max(1.0);
             // Cuts equal in ln of the faster size, so that none of them takes the whole change.
             let f = if change[0] > change[1] { low } else { high };
             for cut in 1..cuts as usize {
@@ -85,6 +109,7 @@ impl Growth {
         }
         let mut growth = Self {
             steps,
+            iterations: pace.iterations,
             keys: keys.max(1),
             step: 0,
             iteration: 0,
@@ -140,10 +165,11 @@ impl Growth {
     /// settled state.
     pub fn of(dimension: Dimension, keys: usize, importance: &[f32]) -> Self {
         let (low, high) = importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
-        let mut growth = Self::plan(keys, low, high);
-        if dimension == Dimension::Two {
-            growth.walk();
+        if dimension == Dimension::Three {
+            return Self::plan(keys, low, high);
         }
+        let mut growth = Self::paced(PICTURE, keys, low, high);
+        growth.walk();
         growth
     }
 
@@ -153,6 +179,7 @@ impl Growth {
         let steps = (1..=count).map(|k| k as f32 / count as f32).collect();
         Self {
             steps,
+            iterations: ITERATIONS_PER_STEP,
             keys: 1,
             step: 0,
             iteration: 0,
@@ -194,7 +221,7 @@ impl Growth {
     /// Whether the state at this λ is as good as it gets: time for a keyframe.
     pub fn settled(&self) -> bool {
         if self.step + 1 < self.steps.len() {
-            let enough = if self.leaps { ITERATIONS_PER_LEAP } else { ITERATIONS_PER_STEP[usize::from(self.is_key())] };
+            let enough = if self.leaps { ITERATIONS_PER_LEAP } else { self.iterations[usize::from(self.is_key())] };
             self.iteration >= enough
         } else {
             let [least, most] = if self.leaps { LEAP_SETTLING } else { [LEAST_SETTLING, self.patience] };

@@ -48,7 +48,7 @@ static SCENES: [Kept; 4] = [
         entry: Entry {
             name: "africa",
             one_line: "a map of Africa whose countries grow with the density of their population",
-            reference: "population 2014: World Bank, World Development Indicators, SP.POP.TOTL (no figure for Eritrea and Western \
+            reference: "importance ∝ (population / area)^(1/4), half of the exponent at which area would be population; population 2014: World Bank, World Development Indicators, SP.POP.TOTL (no figure for Eritrea and Western \
                         Sahara, which keep their size); outlines after Natural Earth 1:110m, public domain",
             resolution: 256,
             fidelity: 1.0,
