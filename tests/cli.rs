@@ -405,3 +405,13 @@ fn help_and_version_end_with_0() {
         assert!(text(&output.stdout).contains(expected), "{arguments}");
     }
 }
+
+#[test]
+fn the_gallery_is_listed_a_line_each() {
+    let run = Command::new(PROGRAM).arg("gallery").output().unwrap();
+    let text = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success());
+    for name in ["homunculus", "hand", "elephant", "crocodile"] {
+        assert!(text.lines().any(|line| line.starts_with(&format!("gallery:{name} "))), "{name} in {text}");
+    }
+}

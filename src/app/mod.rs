@@ -11,6 +11,7 @@
 
 mod cancel;
 mod flat;
+mod gallery;
 mod inspect;
 mod load;
 pub mod options;
@@ -68,6 +69,7 @@ fn run(order: Order) -> Result<Verdict> {
     match order {
         Order::Warp(order) => warp::run(*order),
         Order::Inspect(order) => inspect::run(&order),
+        Order::Gallery => gallery::run(),
         #[cfg(feature = "record")]
         Order::Record(order) => record::run(*order),
         #[cfg(feature = "window")]

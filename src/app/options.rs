@@ -20,6 +20,8 @@ pub enum Order {
     Warp(Box<WarpOrder>),
     /// Say what is in a file.
     Inspect(InspectOptions),
+    /// List the built-in scenes.
+    Gallery,
     /// Film the growth.
     #[cfg(feature = "record")]
     Record(Box<RecordOrder>),
@@ -55,6 +57,8 @@ struct CommandLine {
 enum Face {
     Warp(Box<WarpOptions>),
     Inspect(InspectOptions),
+    /// List the built-in scenes: warp, play or record them as gallery:NAME
+    Gallery,
     #[cfg(feature = "record")]
     Record(Box<RecordOptions>),
     #[cfg(feature = "window")]
@@ -186,6 +190,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Resu
         #[cfg(feature = "window")]
         Some(Face::Play(options)) => Order::Play(options),
         Some(Face::Inspect(options)) => Order::Inspect(options),
+        Some(Face::Gallery) => Order::Gallery,
         Some(Face::Warp(options)) => {
             let layers = layers_of(&options.scene, &matches)?;
             Order::Warp(Box::new(WarpOrder { options: *options, layers }))
