@@ -25,5 +25,5 @@ fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
     let low = mix(shade(corner.x, corner.y), shade(corner.x + 1, corner.y), t.x);
     let high = mix(shade(corner.x, corner.y + 1), shade(corner.x + 1, corner.y + 1), t.x);
     let fade = 1.0 - smoothstep(0.7, 1.0, length(in.uv - vec2(0.5)) * 2.0);
-    return vec4(0.10, 0.105, 0.12, fade * mix(low, high, t.y));
+    return vec4(0.10, 0.105, 0.12, min(1.6 * fade * mix(low, high, t.y), 0.75));
 }

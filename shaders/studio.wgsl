@@ -40,16 +40,16 @@ fn to_eye(position: vec3<f32>) -> vec3<f32> {
 }
 
 // Share of the key light that arrives, blurred over a disc of `spread` world units: taps on a golden-angle spiral, each filtered
-// by the sampler, so that neighbouring taps overlap and no bands show.
-fn key_shadow(position: vec3<f32>, normal: vec3<f32>, spread: f32) -> f32 {
+// by the sampler, so that neighbouring taps overlap and no bands show. What casts shadows itself must be lifted off itself: a
+// disc on a slanted surface reaches below it.
+fn key_shadow(position: vec3<f32>, normal: vec3<f32>, spread: f32, lift: f32) -> f32 {
     if lights.n_directional_lights == 0u {
         return 1.0;
     }
     let light = &lights.directional_lights[0];
     let cascade = &(*light).cascades[0];
     let texel = (*cascade).texel_size;
-    // A disc of this width on a slanted surface reaches that far below it.
-    let lifted = position + normal * (1.5 * texel + 0.5 * spread) + (*light).direction_to_light * texel;
+    let lifted = position + normal * (1.5 * texel + lift) + (*light).direction_to_light * texel;
     let clip = (*cascade).clip_from_world * vec4(lifted, 1.0);
     let ndc = clip.xyz / clip.w;
     if any(abs(ndc.xy) > vec2(1.0)) || ndc.z < 0.0 || ndc.z > 1.0 {
@@ -90,11 +90,11 @@ fn diffuse_light(surface: Surface, shadow: f32) -> vec3<f32> {
     let fill = saturate(0.5 + 0.5 * dot(n, normalize(0.9 * right + 0.1 * vec3(0.0, 1.0, 0.0) + 0.6 * back)));
     let rim = saturate(dot(n, normalize(0.75 * right + 0.55 * vec3(0.0, 1.0, 0.0) - back)));
     let sky = 0.5 + 0.5 * n.y;
-    var light = 0.98 * key * vec3(1.0, 0.975, 0.94);
-    light += surface.openness * 0.17 * fill * fill * vec3(0.93, 0.97, 1.0);
-    light += surface.openness * 0.30 * rim * vec3(0.96, 0.98, 1.0);
+    var light = 1.08 * key * vec3(1.0, 0.975, 0.94);
+    light += surface.openness * 0.13 * fill * fill * vec3(0.93, 0.97, 1.0);
+    light += surface.openness * 0.34 * rim * vec3(0.96, 0.98, 1.0);
     // The white room, its floor a little darker and warmer than its ceiling.
-    light += surface.openness * mix(vec3(0.155, 0.148, 0.14), vec3(0.27, 0.275, 0.285), sky);
+    light += surface.openness * mix(vec3(0.10, 0.092, 0.085), vec3(0.225, 0.23, 0.24), sky);
     return light;
 }
 

@@ -249,7 +249,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
     let facing = dot(normal, studio::to_key());
     var shadow = 0.0;
     if facing > 0.0 {
-        shadow = studio::key_shadow(in.world, normal, 0.02);
+        shadow = studio::key_shadow(in.world, normal, 0.02, 0.01);
     }
 #ifdef MAPPED
     // The colour is the legend's where the light is full, and never brighter.

@@ -12,7 +12,7 @@ use crate::{boundary::Boundary, transfer::Binding, voxel::Complex};
 ///
 /// Its surface is drawn with the materials and textures of the file, or studio grey where there are none.
 #[derive(Component, Debug, Clone)]
-#[require(Looks, Placement, Visibility)]
+#[require(Looks, Placement, Transform, Visibility)]
 pub struct Body {
     /// B.
     pub boundary: Arc<Boundary>,

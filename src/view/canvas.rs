@@ -13,7 +13,7 @@ use super::{
     file_materials::FileMaterial,
     material::{Coat, Shown, SurfaceMaterial, Variant},
     state::{Sheet, State},
-    studio::ContactMaterial,
+    studio::{ContactMaterial, FloorPlane},
 };
 
 /// What the view keeps of a body, beside its [`Body`].
@@ -152,6 +152,7 @@ impl Canvas {
         let drawn = (
             Mesh3d(mesh),
             MeshMaterial3d(material.clone()),
+            FloorPlane,
             Transform::from_xyz(0.0, -1.0e-3, 0.0),
             NotShadowCaster,
             NoFrustumCulling,

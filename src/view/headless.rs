@@ -266,5 +266,7 @@ impl Renderer {
 
 fn draw_overlay(mut contexts: EguiContexts, mut overlay: ResMut<Overlay>) {
     let (Some(draw), Ok(context)) = (&mut overlay.0, contexts.ctx_mut()) else { return };
+    // Nothing fades in: the clock is the frame number.
+    context.all_styles_mut(|style| style.animation_time = 0.0);
     draw(context);
 }

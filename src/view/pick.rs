@@ -49,8 +49,11 @@ pub struct Picker {
     /// `[vertices]` of states seen lately.
     states: Vec<(Weak<Vec<Vec3A>>, Vec<Vec3A>)>,
     /// What `posed` holds.
-    pose: Option<(Weak<Vec<Vec3A>>, Weak<Vec<Vec3A>>, f32)>,
+    pose: Option<Held>,
 }
+
+/// A pose, without holding its states: from, to, blend.
+type Held = (Weak<Vec<Vec3A>>, Weak<Vec<Vec3A>>, f32);
 
 /// A surface and the boxes around its triangles.
 struct Shape {
@@ -107,7 +110,7 @@ impl Picker {
     /// Brings the posed shape to a pose.
     fn follow(&mut self, body: &Body, frame: &ViewFrame, pose: &Pose) {
         let is = |weak: &Weak<Vec<Vec3A>>, state: &Arc<Vec<Vec3A>>| std::ptr::eq(weak.as_ptr(), Arc::as_ptr(state));
-        let same = |(from, to, blend): &(_, _, f32)| is(from, &pose.from) && is(to, &pose.to) && *blend == pose.blend;
+        let same = |(from, to, blend): &Held| is(from, &pose.from) && is(to, &pose.to) && *blend == pose.blend;
         if self.pose.as_ref().is_some_and(same) {
             return;
         }

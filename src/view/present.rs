@@ -60,7 +60,9 @@ fn prepare(mut commands: Commands, bodies: Query<(Entity, &Body, Option<&Canvas>
     }
 }
 
-fn place(mut bodies: Query<(&Placement, &mut Transform), (With<Body>, Changed<Placement>)>) {
+type Replaced = (With<Body>, Changed<Placement>);
+
+fn place(mut bodies: Query<(&Placement, &mut Transform), Replaced>) {
     for (placement, mut transform) in &mut bodies {
         transform.translation = placement.offset;
     }
@@ -108,10 +110,10 @@ fn haunt(mut commands: Commands, mut bodies: Query<(Entity, Ref<Body>, Has<Ghost
     }
 }
 
-fn write(
-    mut bodies: Query<(&Looks, Option<&Pose>, Option<&Cursor>, Option<&Ghost>, &mut Canvas)>,
-    mut buffers: ResMut<Assets<ShaderBuffer>>,
-) {
+/// What is written each frame.
+type Written<'a> = (&'a Looks, Option<&'a Pose>, Option<&'a Cursor>, Option<&'a Ghost>, &'a mut Canvas);
+
+fn write(mut bodies: Query<Written>, mut buffers: ResMut<Assets<ShaderBuffer>>) {
     for (looks, pose, cursor, ghost, mut canvas) in &mut bodies {
         let mut shown = Shown { blend: pose.map_or(0.0, |pose| pose.blend.clamp(0.0, 1.0)), ..default() };
         if let Some(wipe) = looks.wipe {

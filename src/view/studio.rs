@@ -189,13 +189,9 @@ fn define(descriptor: &mut RenderPipelineDescriptor, name: &str, value: i32) {
 #[derive(Component)]
 struct Key;
 
-/// Marks the background.
-#[derive(Component)]
-struct BackdropPlane;
-
 /// Marks what only is there with a floor.
 #[derive(Component)]
-struct FloorPlane;
+pub(super) struct FloorPlane;
 
 /// Adds the studio's materials and keeps it as [`Studio`] says.
 pub(super) fn build(app: &mut App) {
@@ -228,7 +224,6 @@ fn set_up(
     );
     let colours = BackdropColours { centre: Vec4::ONE, rim: Vec4::ONE };
     commands.spawn((
-        BackdropPlane,
         Mesh3d(meshes.add(triangle)),
         MeshMaterial3d(backdrops.add(BackdropMaterial { colours })),
         NoFrustumCulling,
@@ -248,18 +243,11 @@ fn set_up(
 fn furnish(
     studio: Res<Studio>,
     mut backdrops: ResMut<Assets<BackdropMaterial>>,
-    mut backdrop: Query<
-        (&MeshMaterial3d<BackdropMaterial>, &mut Visibility),
-        (With<BackdropPlane>, Without<FloorPlane>),
-    >,
-    mut floors: Query<&mut Visibility, (With<FloorPlane>, Without<BackdropPlane>)>,
-    mut contacts: Query<
-        &mut Visibility,
-        (With<MeshMaterial3d<ContactMaterial>>, Without<FloorPlane>, Without<BackdropPlane>),
-    >,
+    mut backdrop: Query<(&MeshMaterial3d<BackdropMaterial>, &mut Visibility), Without<FloorPlane>>,
+    mut floors: Query<&mut Visibility, With<FloorPlane>>,
 ) {
     let shown = |is_shown: bool| if is_shown { Visibility::Inherited } else { Visibility::Hidden };
-    for mut visibility in floors.iter_mut().chain(&mut contacts) {
+    for mut visibility in &mut floors {
         visibility.set_if_neq(shown(studio.floor));
     }
     if !studio.is_changed() {
