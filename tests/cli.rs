@@ -279,7 +279,6 @@ fn bad_input_ends_with_2_in_one_sentence_and_writes_nothing() {
     std::fs::write(folder.path().join("v.csv"), "vertex,importance\n8,2\n").unwrap();
     let before = listing(folder.path());
     let cases = [
-        ("", "Usage"),
         ("warp", "required"),
         ("warp absent.obj", "absent.obj: cannot read"),
         ("warp empty.obj", "empty.obj"),

@@ -86,11 +86,12 @@ impl Film {
             again = false;
             for k in 0..self.keyframes.len() {
                 let at = &self.keyframes[k].positions;
-                again |= shells.iter_mut().fold(false, |any, shell| shell.straighten(at) || any);
+                again |= shells.iter_mut().map(|shell| shell.straighten(at)).filter(|&changed| changed).count() > 0;
                 let Some(next) = self.keyframes.get(k + 1) else { continue };
                 for part in (1..8).map(|k| k as f32 / 8.0) {
                     let state = blend(at, &next.positions, part);
-                    again |= shells.iter_mut().fold(false, |any, shell| shell.straighten(&state) || any);
+                    again |=
+                        shells.iter_mut().map(|shell| shell.straighten(&state)).filter(|&changed| changed).count() > 0;
                 }
             }
             changed |= again;

@@ -96,7 +96,7 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
 
 /// Straightens what a flat surface needs; whether it helped to change anything.
 fn straighten(shells: &mut [Shell], warped: &[Vec3A]) -> bool {
-    shells.iter_mut().fold(false, |changed, shell| shell.straighten(warped) || changed)
+    shells.iter_mut().map(|shell| shell.straighten(warped)).filter(|&changed| changed).count() > 0
 }
 
 /// The certificate of a leap's end, if all of the way there is valid and no element comes out flatter than the guard

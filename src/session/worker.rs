@@ -279,9 +279,9 @@ impl Worker<'_> {
         let has_key = self.take_film(adapting);
         if done {
             if adapting {
-                self.grow_again()
+                self.grow_again();
             } else {
-                self.now.phase = Phase::Checking
+                self.now.phase = Phase::Checking;
             }
             self.take_state(true);
             self.publish();

@@ -31,7 +31,7 @@ pub(super) fn press(
         let sandbox = &mut *sandbox;
         match &message.logical_key {
             Key::Character(character) => {
-                character_key(sandbox, &character.to_lowercase(), control, shift, message.repeat)
+                character_key(sandbox, &character.to_lowercase(), control, shift, message.repeat);
             }
             key if !message.repeat || matches!(key, Key::ArrowLeft | Key::ArrowRight) => named_key(sandbox, key),
             _ => {}

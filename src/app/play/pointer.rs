@@ -27,7 +27,7 @@ impl Default for Viewport {
 
 impl Viewport {
     /// A place of the window, from the middle of the view in its heights, y down.
-    fn from_middle(&self, at: Vec2) -> Vec2 {
+    fn off_middle(&self, at: Vec2) -> Vec2 {
         (at - self.min - 0.5 * self.size) / self.size.y.max(1.0)
     }
 }
@@ -77,7 +77,7 @@ pub(super) fn handle(
     pointer.at = moves.read().last().map(|moved| moved.position).or(before);
     let Some(at) = pointer.at else { return };
     let moved = (at - before.unwrap_or(at)) / viewport.size.y.max(1.0);
-    let place = viewport.from_middle(at);
+    let place = viewport.off_middle(at);
 
     let turned: f32 =
         wheels.read().map(|wheel| if wheel.unit == MouseScrollUnit::Line { wheel.y } else { wheel.y / 40.0 }).sum();
@@ -123,10 +123,9 @@ pub(super) fn handle(
     }
     if !buttons.any_pressed([MouseButton::Left, MouseButton::Middle, MouseButton::Right])
         && pointer.drag.take().is_some()
+        && let Some(open) = sandbox.open.as_mut().filter(|open| open.painting.is_painting())
     {
-        if let Some(open) = sandbox.open.as_mut().filter(|open| open.painting.is_painting()) {
-            open.painting.end();
-        }
+        open.painting.end();
     }
 }
 

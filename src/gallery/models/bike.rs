@@ -108,7 +108,7 @@ fn handlebar(s: &mut Solid) {
     s.add("handlebar", 0.012, move |p| bar.distance(v(p.x, p.y, p.z.abs())));
     let grip = Tube::new(&[
         (v(0.362, 0.996, 0.256), 0.0285),
-        (v(0.318, 0.992, 0.303), 0.0265),
+        (v(0.3181, 0.992, 0.303), 0.0265),
         (v(0.262, 0.983, 0.357), 0.0285),
     ]);
     s.add("grip", 0.008, move |p| grip.distance(v(p.x, p.y, p.z.abs())));

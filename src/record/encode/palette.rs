@@ -140,10 +140,11 @@ mod tests {
         let (blocks_x, blocks_y) = (frame.width() / 8, frame.height() / 8);
         let mut sum = 0.0;
         for (bx, by) in (0..blocks_x).flat_map(|bx| (0..blocks_y).map(move |by| (bx, by))) {
-            for c in 0..3 {
-                let cells = (0..64).map(|k| (8 * bx + k % 8, 8 * by + k / 8));
-                let wanted: f64 = cells.clone().map(|(x, y)| f64::from(frame.get_pixel(x, y).0[c])).sum();
-                let found: f64 = cells.map(|(x, y)| f64::from(shown[(y * frame.width() + x) as usize][c])).sum();
+            let cells = (0..64).map(|k| (8 * bx + k % 8, 8 * by + k / 8));
+            for channel in 0..3_usize {
+                let wanted: f64 = cells.clone().map(|(x, y)| f64::from(frame.get_pixel(x, y).0[channel])).sum();
+                let pixel = |(x, y): (u32, u32)| f64::from(shown[(y * frame.width() + x) as usize][channel]);
+                let found: f64 = cells.clone().map(pixel).sum();
                 sum += (wanted - found).abs() / 64.0;
             }
         }
