@@ -47,7 +47,7 @@ fn record(folder: &Path, arguments: &str) -> Option<()> {
     let output = run(folder, arguments);
     let said = text(&output.stderr);
     if output.status.code() == Some(2) && said.contains("Vulkan") {
-        println!("skipped: no Vulkan driver");
+        eprintln!("skipped: no Vulkan driver");
         return None;
     }
     assert_eq!(output.status.code(), Some(0), "{arguments}: {said}");
@@ -57,7 +57,7 @@ fn record(folder: &Path, arguments: &str) -> Option<()> {
 fn has_ffmpeg() -> bool {
     let there = Command::new("ffprobe").arg("-version").output().is_ok_and(|o| o.status.success());
     if !there {
-        println!("skipped: no ffmpeg");
+        eprintln!("skipped: no ffmpeg");
     }
     there
 }
@@ -248,7 +248,7 @@ fn webm_goes_through_ffmpeg() {
     let output = run(folder.path(), &format!("{HAND} -o film.webm"));
     let said = text(&output.stderr);
     if said.contains("Vulkan") || said.contains("lacks") {
-        println!("skipped: {said}");
+        eprintln!("skipped: {said}");
         return;
     }
     assert_eq!(output.status.code(), Some(0), "{said}");
@@ -280,7 +280,7 @@ fn an_ffmpeg_that_breaks_off_leaves_nothing_and_is_quoted() {
     let output = command(folder.path(), &format!("{HAND} -o film.webm")).env("PATH", tools.path()).output().unwrap();
     let said = text(&output.stderr);
     if said.contains("Vulkan") {
-        println!("skipped: no Vulkan driver");
+        eprintln!("skipped: no Vulkan driver");
         return;
     }
     assert_eq!(output.status.code(), Some(1), "{said}");
@@ -348,9 +348,13 @@ fn interrupted(film: &str, interrupt: bool) -> Option<(Option<i32>, Vec<String>)
     let mut command = command(folder.path(), &format!("{order} -o {film}"));
     let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
-    let drawing = lines.find(|line| line.contains("record: 1") || line.contains("Vulkan"))?;
+    let Some(drawing) = lines.find(|line| line.contains("record: 1") || line.contains("Vulkan")) else {
+        child.wait().unwrap();
+        return None;
+    };
     if drawing.contains("Vulkan") {
-        println!("skipped: no Vulkan driver");
+        child.wait().unwrap();
+        eprintln!("skipped: no Vulkan driver");
         return None;
     }
     if interrupt {
@@ -391,7 +395,7 @@ impl SmallDisk {
         mount.args(["-t", "tmpfs", "-o", &format!("size={size}"), "none"]).arg(folder.path());
         let mounted = mount.output().is_ok_and(|output| output.status.success());
         if !mounted {
-            println!("skipped: a small disk cannot be mounted here");
+            eprintln!("skipped: a small disk cannot be mounted here");
         }
         mounted.then_some(Self(folder))
     }
@@ -414,7 +418,7 @@ fn a_full_disk_leaves_no_half_film() {
         let output = run(work.path(), &format!("{HAND} -o {}", path.display()));
         let said = text(&output.stderr);
         if said.contains("Vulkan") {
-            println!("skipped: no Vulkan driver");
+            eprintln!("skipped: no Vulkan driver");
             return;
         }
         assert_eq!(output.status.code(), Some(1), "{film}: {said}");

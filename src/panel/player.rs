@@ -34,7 +34,7 @@ pub struct Player {
     pub repeat: Repeat,
     /// How λ follows time.
     pub easing: Easing,
-    /// Films a second ÷ [`SECONDS`]: 1 takes four seconds.
+    /// Films a second ÷ `SECONDS`: 1 takes four seconds.
     pub speed: f32,
 }
 

@@ -152,7 +152,7 @@ impl Renderer {
         }
     }
 
-    /// Everything else: resources [`Studio`](super::Studio), components of the bodies.
+    /// Everything else: resources [`Studio`], components of the bodies.
     pub fn world_mut(&mut self) -> &mut World {
         self.app.world_mut()
     }

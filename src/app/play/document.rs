@@ -110,7 +110,7 @@ impl Document {
         Ok(())
     }
 
-    /// Another layer list, base included, as a scene to be read by [`under`].
+    /// Another layer list, base included, as a scene to be read by `under`.
     ///
     /// # Errors
     /// As [`Scene::new`].

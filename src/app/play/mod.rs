@@ -2,7 +2,7 @@
 //!
 //! [`Sandbox`] is everything but the window: what is open, chosen and solved. [`PlayPlugin`] lets pointer and keys act on
 //! it and keeps the view's components; it needs neither a window nor a GPU, so that tests drive it with Bevy's own input
-//! messages. [`WindowPlugin`](window::WindowPlugin) adds panels, the viewport and the rhythm of frames.
+//! messages. The window plugin adds panels, the viewport and the rhythm of frames.
 
 mod bench;
 mod display;

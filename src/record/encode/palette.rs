@@ -141,7 +141,7 @@ mod tests {
         let mut sum = 0.0;
         for (bx, by) in (0..blocks_x).flat_map(|bx| (0..blocks_y).map(move |by| (bx, by))) {
             let cells = (0..64).map(|k| (8 * bx + k % 8, 8 * by + k / 8));
-            for channel in 0..3_usize {
+            for channel in [0, 1, 2] {
                 let wanted: f64 = cells.clone().map(|(x, y)| f64::from(frame.get_pixel(x, y).0[channel])).sum();
                 let pixel = |(x, y): (u32, u32)| f64::from(shown[(y * frame.width() + x) as usize][channel]);
                 let found: f64 = cells.clone().map(pixel).sum();
