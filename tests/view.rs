@@ -257,7 +257,8 @@ fn a_ray_finds_what_is_drawn() {
     let aim =
         |y: f32| Orbit { target: expected + placement.offset + Vec3::Y * y, yaw: 0.2, pitch: 0.1, ..Orbit::default() };
     let below_rest = Orbit { target: tip(&body, &from) + placement.offset - Vec3::Y * 0.3, ..aim(0.0) };
-    let below = Picker::default().pick(&body, Some(&pose), &placement, below_rest.ray(Vec2::ZERO), Target::Rest);
+    let found_at_rest =
+        Picker::default().pick(&body, Some(&pose), &placement, below_rest.ray(Vec2::ZERO), Target::Rest);
     let mut pick = |y: f32, pose, target| picker.pick(&body, pose, &placement, aim(y).ray(Vec2::ZERO), target);
     assert_eq!(pick(0.01, Some(&pose), Target::Surface), None, "above the tip there is nothing");
     let hit = pick(-0.05, Some(&pose), Target::Surface).expect("the pyramid below its tip");
@@ -275,7 +276,7 @@ fn a_ray_finds_what_is_drawn() {
     assert!(hit.position.distance(deformed) < 1e-3, "{} {deformed}", hit.position);
     // The rest shape is lower: the same ray passes above it.
     assert_eq!(pick(-0.05, Some(&pose), Target::Rest), None);
-    assert!(below.is_some_and(|hit| hit.rest_position.distance(hit.position - placement.offset) < 1e-4));
+    assert!(found_at_rest.is_some_and(|hit| hit.rest_position.distance(hit.position - placement.offset) < 1e-4));
     // Sabotage: at another blend the ray meets another place.
     let other = Pose { blend: 0.6, ..pose.clone() };
     let moved = pick(-0.05, Some(&other), Target::Surface).expect("a hit");

@@ -11,6 +11,6 @@ pub struct Ghost {
 
 impl Default for Ghost {
     fn default() -> Self {
-        Self { opacity: 0.18 }
+        Self { opacity: 0.28 }
     }
 }

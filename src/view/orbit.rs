@@ -2,7 +2,7 @@
 
 use bevy::{camera::ScalingMode, prelude::*};
 
-use super::ViewSystems;
+use super::{Extent, ViewSystems};
 
 /// A camera that looks at a target from a distance. Put it on a `Camera3d`; its transform and projection follow.
 #[derive(Component, Debug, Clone, Copy, PartialEq)]
@@ -95,6 +95,13 @@ impl Orbit {
         })
     }
 
+    /// The camera of pictures: straight on, parallel, the whole box in sight.
+    pub fn flat(extent: Extent, aspect: f32) -> Self {
+        let mut orbit = Self { yaw: 0.0, pitch: 0.0, orthographic: true, ..Self::default() };
+        orbit.frame(extent, aspect);
+        orbit
+    }
+
     /// Turns by angles in radians; the pitch stops at the poles.
     pub fn orbit(&mut self, yaw: f32, pitch: f32) {
         self.yaw += yaw;
@@ -117,7 +124,7 @@ impl Orbit {
     }
 
     /// Looks at a box so that it fills the picture of this aspect (width / height) with a margin.
-    pub fn frame(&mut self, low: Vec3, high: Vec3, aspect: f32) {
+    pub fn frame(&mut self, Extent { low, high }: Extent, aspect: f32) {
         self.target = 0.5 * (low + high);
         let (back, half) = (self.rotation().inverse(), 0.5 * (high - low));
         let (mut needed, tangent) = (0.0_f32, (0.5 * FIELD_OF_VIEW).tan());
@@ -159,5 +166,66 @@ impl Orbit {
             return new(self.eye() + across * self.distance - ahead * 20.0, ahead);
         }
         new(self.eye(), ahead + across)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a place is on the screen, in heights of the picture from its middle, y down.
+    fn seen(orbit: &Orbit, place: Vec3) -> Vec2 {
+        let p = orbit.rotation().inverse() * (place - orbit.eye());
+        let depth = if orbit.orthographic { orbit.distance } else { -p.z };
+        Vec2::new(p.x, -p.y) / (2.0 * depth * (0.5 * FIELD_OF_VIEW).tan())
+    }
+
+    #[test]
+    fn zooming_keeps_what_is_under_the_pointer_and_panning_carries_it() {
+        for orthographic in [false, true] {
+            let before = Orbit { orthographic, ..Orbit::default() };
+            let cursor = Vec2::new(0.3, -0.2);
+            // A place in the plane of the target, under the pointer.
+            let place = before.target
+                + before.rotation()
+                    * Vec3::new(cursor.x, -cursor.y, 0.0)
+                    * (2.0 * before.distance * (0.5 * FIELD_OF_VIEW).tan());
+            assert!(seen(&before, place).distance(cursor) < 1e-5);
+            let mut zoomed = before;
+            zoomed.zoom_to(1.7, cursor);
+            assert!(seen(&zoomed, place).distance(cursor) < 1e-4, "{orthographic}");
+            let mut panned = before;
+            panned.pan(Vec2::new(0.1, 0.05));
+            assert!(seen(&panned, place).distance(cursor + Vec2::new(0.1, 0.05)) < 1e-4);
+            // Sabotage: zooming to elsewhere moves it.
+            zoomed.zoom_to(1.7, Vec2::ZERO);
+            assert!(seen(&zoomed, place).distance(cursor) > 0.05);
+        }
+    }
+
+    #[test]
+    fn a_framed_box_is_in_sight_and_fills_it() {
+        let extent = Extent { low: Vec3::new(-1.0, 0.0, -0.4), high: Vec3::new(1.0, 2.0, 0.4) };
+        for (orthographic, aspect) in [(false, 1.6), (true, 1.6), (false, 0.5)] {
+            let mut orbit = Orbit { orthographic, ..Orbit::default() };
+            orbit.frame(extent, aspect);
+            let corner = |k: u32| {
+                let pick = |bit: u32| if k >> bit & 1 == 0 { extent.low } else { extent.high };
+                Vec3::new(pick(0).x, pick(1).y, pick(2).z)
+            };
+            let reach =
+                (0..8).map(|k| seen(&orbit, corner(k)).abs()).fold(0.0_f32, |m, p| m.max(p.y).max(p.x / aspect));
+            assert!((0.4..=0.5).contains(&reach), "{orthographic} {aspect}: {reach}");
+        }
+    }
+
+    #[test]
+    fn rays_go_through_what_is_seen() {
+        for orthographic in [false, true] {
+            let orbit = Orbit { orthographic, ..Orbit::default() };
+            let cursor = Vec2::new(-0.2, 0.35);
+            let ray = orbit.ray(cursor);
+            assert!(seen(&orbit, ray.get_point(4.9)).distance(cursor) < 1e-4);
+        }
     }
 }

@@ -44,7 +44,11 @@ pub(super) struct Placed {
 
 /// `[vertices]` of a body in a state, view space, standing on the floor.
 pub(super) fn placed(body: &Body, frame: &ViewFrame, state: &[Vec3A]) -> Placed {
-    let displacements = body.binding.displacements(state);
+    placed_by(body, frame, &body.binding.displacements(state))
+}
+
+/// The same from displacements of the halved lattice's nodes.
+fn placed_by(body: &Body, frame: &ViewFrame, displacements: &[Vec3A]) -> Placed {
     let to_view = frame.world_length(body.complex.grid.cell_size);
     let rest = &body.boundary.positions;
     let mut positions: Vec<Vec3A> = (0..rest.len())
@@ -103,10 +107,10 @@ impl State {
         state: &Arc<Vec<Vec3A>>,
         buffers: &mut Assets<ShaderBuffer>,
     ) -> Self {
-        let Placed { positions, lift } = placed(body, frame, state);
+        let displacements = body.binding.displacements(state);
+        let Placed { positions, lift } = placed_by(body, frame, &displacements);
         let extent = extent_of(body, &positions);
         let gradients = normals::gradients(&body.complex, state);
-        let displacements = body.binding.displacements(state);
         let surface = Sheet {
             nodes: buffers.add(view_displacements(body, frame, &displacements, &rows.used, lift)),
             normals: buffers.add(ShaderBuffer::from(rows.normals_in(body, &gradients))),

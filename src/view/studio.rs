@@ -255,7 +255,7 @@ fn furnish(
     }
     let srgb = |[r, g, b]: [u8; 3]| Vec4::new(f32::from(r), f32::from(g), f32::from(b), 255.0) / 255.0;
     let (centre, rim) = match studio.backdrop {
-        Backdrop::Studio => ([247, 247, 248], [208, 211, 215]),
+        Backdrop::Studio => ([247, 247, 248], [214, 216, 220]),
         Backdrop::Plain(colour) => (colour, colour),
         Backdrop::Transparent => ([0; 3], [0; 3]),
     };
