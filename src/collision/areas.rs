@@ -25,7 +25,7 @@ const ROUNDS: u32 = 24;
 const GOOD_ENOUGH: f64 = 0.004;
 
 /// A region's factor stays within this range and its inverse: what cannot be reached is not asked for ever louder.
-const MOST: f64 = 16.0;
+const MOST: f64 = 4.0;
 
 /// No region asks for more or less than this many times the area at once: a state that is still on its way would be asked
 /// for what it is about to reach anyway.

@@ -32,7 +32,7 @@ pub fn cell_importance(complex: &Complex, importance: &[f32]) -> Vec<f32> {
 
 /// Rounds of smoothing; each is a tent over three cells. Fewer leave jagged lines where importance steps, more blur small
 /// regions into their neighbours.
-const SMOOTHING: u32 = 2;
+const SMOOTHING: u32 = 1;
 
 /// `[cells]` importance of a picture without steps: sizes that jump from cell to cell bend every line that crosses there.
 /// Smoothed in the logarithm, as importance on bodies is.
