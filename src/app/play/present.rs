@@ -235,7 +235,7 @@ pub(super) fn camera(
                 Look::From(axis) => wanted.look_from(axis),
                 Look::Frame => {
                     let [low, high] = bounds(&sandbox.snapshot, sandbox.choice.compare == Compare::SideBySide);
-                    wanted.frame(low, high, viewport.size.x / viewport.size.y.max(1.0));
+                    wanted.frame(crate::view::Extent { low, high }, viewport.size.x / viewport.size.y.max(1.0));
                     // Room for the legend and for what the eye wants around a thing.
                     wanted.distance *= 1.12;
                     *framed = (sandbox.snapshot.phase != Phase::Done).then_some((wanted.target, wanted.distance));
