@@ -1,4 +1,4 @@
-//! `homunculus`: warp a body until local size is proportional to importance, and prove that it neither folds nor passes
+//! `homunculus`: warp a body or a picture until local size is proportional to importance, and prove that it neither folds nor passes
 //! through itself.
 //!
 //! An implementation of *Homunculus Warping: Conveying importance using self-intersection-free non-homogeneous mesh
