@@ -1,5 +1,5 @@
-//! `homunculus`: warp a body or a picture until local size is proportional to importance, and prove that it neither folds nor passes
-//! through itself.
+//! `homunculus`: warp a body or a picture until local size is proportional to importance, and prove that it neither
+//! folds nor passes through itself.
 //!
 //! An implementation of *Homunculus Warping: Conveying importance using self-intersection-free non-homogeneous mesh
 //! deformation* (Reinert, Ritschel, Seidel 2012). The folders are the paper's sections, the names its symbols.
