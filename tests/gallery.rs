@@ -2,8 +2,9 @@
 //! regions cover it smoothly, its fingers stay apart at the suggested resolution, and bad values get one clear
 //! sentence. Every check has a sibling that breaks one thing and must be refused.
 
+mod common;
+
 use std::collections::{BTreeSet, HashMap};
-use std::process::Command;
 
 use glam::{DVec3, Vec3};
 use homunculus::boundary::Boundary;
@@ -90,23 +91,10 @@ fn sabotage_a_hole_a_turned_triangle_and_a_loose_piece_are_seen() {
     assert!(!surface_faults(&inside_out).is_empty());
 }
 
-/// Triangles that pass through others, counted by an independent program; `None` where it is not installed.
-fn self_intersections(boundary: &Boundary) -> Option<usize> {
-    let folder = tempfile::tempdir().ok()?;
-    let path = folder.path().join("surface.obj");
-    let mut text: String = boundary.positions.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
-    text.extend(boundary.triangles.iter().map(|t| format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1)));
-    std::fs::write(&path, text).ok()?;
-    let script =
-        "import sys, meshlib.mrmeshpy as m\nprint(m.findSelfCollidingTrianglesBS(m.loadMesh(sys.argv[1])).count())";
-    let output = Command::new("python3").args(["-c", script]).arg(&path).output().ok()?;
-    String::from_utf8(output.stdout).ok()?.trim().parse().ok()
-}
-
 #[test]
 fn no_triangle_passes_through_another() {
     for model in [gallery::human_model(), gallery::hand_model()] {
-        match self_intersections(&model.expect("the baked model reads").boundary) {
+        match common::self_intersections(&model.expect("the baked model reads").boundary) {
             Some(count) => assert_eq!(count, 0),
             None => eprintln!("skipped: python3 with meshlib is not here"),
         }
@@ -118,7 +106,7 @@ fn sabotage_a_vertex_pushed_through_the_body_is_seen() {
     let mut model = human().boundary;
     let top = (0..model.positions.len()).max_by(|&a, &b| model.positions[a].y.total_cmp(&model.positions[b].y));
     model.positions[top.expect("there are vertices")] = DVec3::new(0.0, 1.2, 0.5);
-    match self_intersections(&model) {
+    match common::self_intersections(&model) {
         Some(count) => assert!(count > 0),
         None => eprintln!("skipped: python3 with meshlib is not here"),
     }

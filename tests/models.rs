@@ -5,7 +5,6 @@ mod common;
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
-use std::process::Command;
 
 use homunculus::boundary::{Attribute, Boundary};
 use homunculus::gallery::models::{Figure, figures};
@@ -105,24 +104,11 @@ fn sabotage_a_hole_a_turned_triangle_a_pinch_and_a_loose_vertex_are_seen() {
     assert!(spoiled(&|b| b.triangles.iter_mut().flatten().filter(|v| **v == 900).for_each(|v| *v = 3)) > 0);
 }
 
-/// Triangles that pass through others, counted by an independent program; `None` where it is not installed.
-fn self_intersections(boundary: &Boundary) -> Option<usize> {
-    let folder = tempfile::tempdir().ok()?;
-    let path = folder.path().join("surface.obj");
-    let mut text: String = boundary.positions.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
-    text.extend(boundary.triangles.iter().map(|t| format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1)));
-    std::fs::write(&path, text).ok()?;
-    let script =
-        "import sys, meshlib.mrmeshpy as m\nprint(m.findSelfCollidingTrianglesBS(m.loadMesh(sys.argv[1])).count())";
-    let output = Command::new("python3").args(["-c", script]).arg(&path).output().ok()?;
-    String::from_utf8(output.stdout).ok()?.trim().parse().ok()
-}
-
 #[test]
 fn no_triangle_passes_through_another() {
     for figure in figures() {
         let boundary = figure.model().expect("the baked model reads").boundary;
-        match self_intersections(&boundary) {
+        match common::self_intersections(&boundary) {
             Some(count) => assert_eq!(count, 0, "{}", figure.name),
             None => return eprintln!("skipped: python3 with meshlib is not here"),
         }

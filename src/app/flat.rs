@@ -13,7 +13,7 @@ use super::options::{Colour, WarpOptions};
 use super::outputs::Outputs;
 use super::{Verdict, cancel, progress, say, warp};
 use crate::boundary::Boundary;
-use crate::export::report::{self, AreaReport, Report};
+use crate::export::report::{AreaReport, Report};
 use crate::export::{self, GrowthFrame, write_atomically};
 use crate::film::blend_places;
 use crate::importance;
@@ -119,15 +119,7 @@ fn write(
         growth(options, path, picture, solved, drawn, &painter)?;
         written.push(path.clone());
     }
-    let report_path = if report.certified() { outputs.report.clone() } else { outputs.report_beside() };
-    if let Some(path) = report_path {
-        report::write(report, &path)?;
-        written.push(path);
-    }
-    if let Some(path) = &outputs.scene {
-        scene.save(path)?;
-        written.push(path.clone());
-    }
+    written.extend(outputs.write_accounts(scene, report)?);
     Ok(written)
 }
 

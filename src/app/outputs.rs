@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::options::WarpOptions;
+use crate::export::report::{self, Report};
 use crate::scene::{Scene, Source};
 use crate::{Error, Result};
 
@@ -48,6 +49,24 @@ impl Outputs {
     pub fn report_beside(&self) -> Option<PathBuf> {
         let beside = || self.mesh.as_ref().or(self.growth.as_ref()).map(|path| path.with_extension("report.json"));
         self.report.clone().or_else(beside)
+    }
+
+    /// Writes report and scene where they are due: the same for bodies and pictures. Returns where.
+    ///
+    /// # Errors
+    /// If one cannot be written.
+    pub fn write_accounts(&self, scene: &Scene, report: &Report) -> Result<Vec<PathBuf>> {
+        let mut written = Vec::new();
+        let report_path = if report.certified() { self.report.clone() } else { self.report_beside() };
+        if let Some(path) = report_path {
+            report::write(report, &path)?;
+            written.push(path);
+        }
+        if let Some(path) = &self.scene {
+            scene.save(path)?;
+            written.push(path.clone());
+        }
+        Ok(written)
     }
 
     fn all(&self) -> impl Iterator<Item = &Path> {

@@ -7,7 +7,7 @@ use super::options::{Colour, WarpOrder};
 use super::outputs::Outputs;
 use super::{Verdict, cancel, flat, progress, say};
 use crate::boundary::Boundary;
-use crate::export::report::{self, Report};
+use crate::export::report::Report;
 use crate::export::{self, GrowthFrame};
 use crate::importance;
 use crate::scene::Scene;
@@ -69,15 +69,7 @@ fn write(
         export::growth(boundary, &frames, colours(Colour::Importance), seconds, path)?;
         written.push(path.clone());
     }
-    let report_path = if report.certified() { outputs.report.clone() } else { outputs.report_beside() };
-    if let Some(path) = report_path {
-        report::write(report, &path)?;
-        written.push(path);
-    }
-    if let Some(path) = &outputs.scene {
-        scene.save(path)?;
-        written.push(path.clone());
-    }
+    written.extend(outputs.write_accounts(scene, report)?);
     Ok(written)
 }
 

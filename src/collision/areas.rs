@@ -33,7 +33,7 @@ const MOST_AT_ONCE: f64 = 1.15;
 
 /// Regions smaller than this many cells are not corrected: they have no cell of their own to grow by, and would drive
 /// their neighbours off.
-const LEAST_CELLS: f64 = 2.0;
+pub const LEAST_CELLS: f64 = 2.0;
 
 /// A region's areas, in pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

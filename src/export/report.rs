@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::write_atomically;
+use crate::collision::areas::LEAST_CELLS;
 use crate::diagnostics::peak_memory_bytes;
 use crate::picture::importance::Field;
 use crate::picture::{RegionArea, median_error, worst};
@@ -202,9 +203,6 @@ pub struct WorstArea {
     /// |achieved / asked − 1|
     pub error: f64,
 }
-
-/// A region of fewer cells than this is not resolved.
-const LEAST_CELLS: f64 = 2.0;
 
 impl AreaReport {
     /// Of areas and the field they were asked by; `cell` is the area of a cell in pixels. Nothing without regions.

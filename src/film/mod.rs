@@ -86,12 +86,11 @@ impl Film {
             again = false;
             for k in 0..self.keyframes.len() {
                 let at = &self.keyframes[k].positions;
-                again |= shells.iter_mut().map(|shell| shell.straighten(at)).filter(|&changed| changed).count() > 0;
+                again |= straighten(shells, at);
                 let Some(next) = self.keyframes.get(k + 1) else { continue };
                 for part in (1..8).map(|k| k as f32 / 8.0) {
                     let state = blend(at, &next.positions, part);
-                    again |=
-                        shells.iter_mut().map(|shell| shell.straighten(&state)).filter(|&changed| changed).count() > 0;
+                    again |= straighten(shells, &state);
                 }
             }
             changed |= again;
@@ -103,6 +102,11 @@ impl Film {
             }
         }
     }
+}
+
+/// Straightens what flat surfaces need in a state; whether that changed any.
+fn straighten(shells: &mut [Shell], positions: &[Vec3A]) -> bool {
+    shells.iter_mut().map(|shell| shell.straighten(positions)).filter(|&changed| changed).count() > 0
 }
 
 /// A keyframe half-way between two, guarded from the first of them.

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use glam::Vec3A;
 
-use super::{Film, Keyframe};
+use super::{Film, Keyframe, straighten};
 use crate::{
     certificate::{Certificate, certify, certify_way},
     collision::{
@@ -92,11 +92,6 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         film.push(Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate, way_is_clear: false });
         growing.0.advance();
     }
-}
-
-/// Straightens what a flat surface needs; whether it helped to change anything.
-fn straighten(shells: &mut [Shell], warped: &[Vec3A]) -> bool {
-    shells.iter_mut().map(|shell| shell.straighten(warped)).filter(|&changed| changed).count() > 0
 }
 
 /// The certificate of a leap's end, if all of the way there is valid and no element comes out flatter than the guard

@@ -2,6 +2,7 @@
 #![allow(dead_code, clippy::print_stdout, reason = "each test file uses its own part; skipping is said aloud")]
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use glam::DVec3;
 use homunculus::{
@@ -35,6 +36,19 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
 /// A number from the environment, or the default.
 pub fn number<T: std::str::FromStr>(name: &str, default: T) -> T {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+
+/// Triangles that pass through others, counted by an independent program; `None` where it is not installed.
+pub fn self_intersections(boundary: &Boundary) -> Option<usize> {
+    let folder = tempfile::tempdir().ok()?;
+    let path = folder.path().join("surface.obj");
+    let mut text: String = boundary.positions.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
+    text.extend(boundary.triangles.iter().map(|t| format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1)));
+    std::fs::write(&path, text).ok()?;
+    let script =
+        "import sys, meshlib.mrmeshpy as m\nprint(m.findSelfCollidingTrianglesBS(m.loadMesh(sys.argv[1])).count())";
+    let output = Command::new("python3").args(["-c", script]).arg(&path).output().ok()?;
+    String::from_utf8(output.stdout).ok()?.trim().parse().ok()
 }
 
 /// Watches nothing, stops never.

@@ -32,7 +32,7 @@ pub fn apng(out: impl Write, count: u32, frames: impl IntoIterator<Item = io::Re
     for frame in frames {
         let frame = frame?;
         check_size(size, &frame.pixels)?;
-        let (left, top, width, height) = changed(&before, &frame.pixels);
+        let [left, top, width, height] = changed(&before, &frame.pixels);
         writer.reset_frame_position()?;
         writer.set_frame_dimension(width, height)?;
         writer.set_frame_position(left, top)?;

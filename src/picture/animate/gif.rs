@@ -52,17 +52,17 @@ pub fn gif(
             _ => false,
         };
         // What was cleared is drawn whole.
-        let (left, top, width, height) = before.as_ref().map_or((0, 0, size.0, size.1), |b| changed(b, &frame.pixels));
-        let rectangle = if opens { (0, 0, size.0, size.1) } else { (left, top, width, height) };
-        let indices = palette.indices(&frame.pixels, rectangle);
+        let changed = before.as_ref().map_or([0, 0, size.0, size.1], |b| changed(b, &frame.pixels));
+        let [left, top, width, height] = if opens { [0, 0, size.0, size.1] } else { changed };
+        let indices = palette.indices(&frame.pixels, (left, top, width, height));
         let drawn = gif::Frame {
             delay: clock.next(frame.delay),
             dispose: if opens { DisposalMethod::Background } else { DisposalMethod::Keep },
             transparent: Some(TRANSPARENT),
-            left: side(rectangle.0)?,
-            top: side(rectangle.1)?,
-            width: side(rectangle.2)?,
-            height: side(rectangle.3)?,
+            left: side(left)?,
+            top: side(top)?,
+            width: side(width)?,
+            height: side(height)?,
             buffer: indices.into(),
             ..gif::Frame::default()
         };

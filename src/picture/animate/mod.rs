@@ -49,20 +49,29 @@ impl Clock {
     }
 }
 
-/// The rectangle (left, top, width, height) in which two frames differ, at least one pixel.
-fn changed(before: &RgbaImage, after: &RgbaImage) -> (u32, u32, u32, u32) {
+/// The smallest rectangle `[x, y, width, height]` outside of which two pictures of one size agree; one pixel where they agree
+/// everywhere, as formats want at least that.
+pub(crate) fn changed(before: &RgbaImage, after: &RgbaImage) -> [u32; 4] {
     let (width, height) = after.dimensions();
     let row = |image: &'_ RgbaImage, y: u32| -> std::ops::Range<usize> {
-        let start = (y * image.width() * 4) as usize;
-        start..start + (image.width() * 4) as usize
+        let stride = image.width() as usize * 4;
+        y as usize * stride..(y as usize + 1) * stride
     };
-    let is_row_changed = |y: &u32| before.as_raw()[row(before, *y)] != after.as_raw()[row(after, *y)];
-    let Some(top) = (0..height).find(is_row_changed) else { return (0, 0, 1, 1) };
-    let bottom = (top..height).rev().find(is_row_changed).unwrap_or(top);
-    let is_column_changed = |x: &u32| (top..=bottom).any(|y| before.get_pixel(*x, y) != after.get_pixel(*x, y));
-    let left = (0..width).find(is_column_changed).unwrap_or(0);
-    let right = (left..width).rev().find(is_column_changed).unwrap_or(left);
-    (left, top, right - left + 1, bottom - top + 1)
+    let differs = |y: &u32| before.as_raw()[row(before, *y)] != after.as_raw()[row(after, *y)];
+    let Some(top) = (0..height).find(differs) else { return [0, 0, 1, 1] };
+    let bottom = (0..height).rev().find(differs).unwrap_or(top);
+    let (mut left, mut right) = (width - 1, 0);
+    for y in top..=bottom {
+        let (b, a) = (&before.as_raw()[row(before, y)], &after.as_raw()[row(after, y)]);
+        let differing = |x: &u32| b[*x as usize * 4..][..4] != a[*x as usize * 4..][..4];
+        if let Some(x) = (0..left).find(differing) {
+            left = x;
+        }
+        if let Some(x) = (right..width).rev().find(differing) {
+            right = x;
+        }
+    }
+    [left.min(right), top, right.max(left) - left.min(right) + 1, bottom - top + 1]
 }
 
 /// What only a fault of the caller could break.

@@ -13,6 +13,7 @@ use std::path::Path;
 
 use image::RgbaImage;
 
+use crate::picture::animate::changed;
 use crate::{Error, Result};
 pub use target::Whole;
 
@@ -135,31 +136,6 @@ impl Format {
             Self::Ffmpeg(recipe) => Box::new(ffmpeg::Ffmpeg::new(recipe, path, reel)?),
         })
     }
-}
-
-/// The smallest rectangle `[x, y, width, height]` outside of which two pictures of one size agree; one pixel where they agree
-/// everywhere, as formats want at least that.
-fn changed(before: &RgbaImage, after: &RgbaImage) -> [u32; 4] {
-    let (width, height) = after.dimensions();
-    let row = |image: &'_ RgbaImage, y: u32| -> std::ops::Range<usize> {
-        let stride = image.width() as usize * 4;
-        y as usize * stride..(y as usize + 1) * stride
-    };
-    let differs = |y: &u32| before.as_raw()[row(before, *y)] != after.as_raw()[row(after, *y)];
-    let Some(top) = (0..height).find(differs) else { return [0, 0, 1, 1] };
-    let bottom = (0..height).rev().find(differs).unwrap_or(top);
-    let (mut left, mut right) = (width - 1, 0);
-    for y in top..=bottom {
-        let (b, a) = (&before.as_raw()[row(before, y)], &after.as_raw()[row(after, y)]);
-        let differing = |x: &u32| b[*x as usize * 4..][..4] != a[*x as usize * 4..][..4];
-        if let Some(x) = (0..left).find(differing) {
-            left = x;
-        }
-        if let Some(x) = (right..width).rev().find(differing) {
-            right = x;
-        }
-    }
-    [left.min(right), top, right.max(left) - left.min(right) + 1, bottom - top + 1]
 }
 
 #[cfg(test)]
