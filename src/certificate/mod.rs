@@ -29,7 +29,7 @@ use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
-    collision::Shell,
+    collision::{Placed, Shell},
     film::blend,
     voxel::{Complex, Dimension},
 };
@@ -98,11 +98,12 @@ const SAMPLES: [f32; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
 ///
 /// Blends are proven at every instant: elements and pairs of faces on which no proof comes out are looked at, exactly,
 /// at every eighth of the way. Of bodies within each other only these parts are looked at.
-pub fn certify_way(complex: &Complex, shells: &[Shell], from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
-    let ((elements, unfolded), found): (_, Vec<_>) = rayon::join(
-        || elements::check_way(complex, from, to, &SAMPLES),
-        || shells.par_iter().map(|s| s.crossings_after(from, to, &SAMPLES)).collect(),
+pub fn certify_way(complex: &Complex, shells: &[Shell], from: &Placed, to: &Placed) -> (Certificate, bool) {
+    let ((elements, unfolded), found) = rayon::join(
+        || elements::check_way(complex, from.nodes(), to.nodes(), &SAMPLES),
+        || to.crossings_from(from, shells, &SAMPLES),
     );
+    let (from, to) = (from.nodes(), to.nodes());
     let (crossings, clear): (Vec<_>, Vec<bool>) = found.into_iter().unzip();
     let clear = unfolded
         && clear.into_iter().all(|clear| clear)

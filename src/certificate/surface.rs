@@ -9,7 +9,7 @@ use super::{
     motion::{HALVINGS, Moving, stay_apart},
     predicates::{Triangle, segments_cross, triangles_cross},
     star::Stars,
-    tree::{Bounds, Tree},
+    tree::{Bounds, Boxes, Tree, may_meet, union},
 };
 
 /// Pairs per parallel task.
@@ -73,6 +73,9 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// `[triangles]` identities of the corners: equal where corners are the same point (welded).
     pub identities: Vec<[u32; 3]>,
+    /// Triangles two by two, neighbours across an edge; those without one are there twice.
+    couples: Vec<[u32; 2]>,
+    /// Over the couples.
     tree: Tree,
     stars: Stars,
 }
@@ -91,35 +94,84 @@ impl Surface {
 
     /// A surface with corner identities of its own (a soup whose equal points are one).
     pub fn welded(triangles: Vec<[u32; 3]>, identities: Vec<[u32; 3]>, rest: &[Vec3A]) -> Self {
-        let centres: Vec<Vec3A> =
-            triangles.iter().map(|t| t.map(|v| rest[v as usize]).iter().sum::<Vec3A>() / 3.0).collect();
+        let couples = couples(&triangles, &identities, rest);
+        let centre = |t: u32| triangles[t as usize].map(|v| rest[v as usize]).iter().sum::<Vec3A>() / 3.0;
+        let centres: Vec<Vec3A> = couples.iter().map(|&[s, t]| 0.5 * (centre(s) + centre(t))).collect();
         let (dimension, stars) = (Dimension::Three, Stars::new(&identities));
-        Self { dimension, tree: Tree::new(&centres), stars, triangles, identities }
+        Self { dimension, tree: Tree::new(&centres), couples, stars, triangles, identities }
     }
 
     /// Pairs of triangles whose boxes meet where each corner is anywhere between its places in `a` and `b`.
     pub fn near_pairs(&self, a: &[Vec3A], b: &[Vec3A], margin: f32) -> Vec<(u32, u32)> {
-        let bounds = |t: u32| {
-            let corners = self.triangles[t as usize];
+        let bounds = |corners: &[u32; 3]| {
             [Bounds::of(corners.iter().flat_map(|&v| [a[v as usize], b[v as usize]])).grown(margin)]
         };
-        self.tree.pairs(bounds, |_, _| true)
+        self.pairs(bounds, |_, _| true)
+    }
+
+    /// Pairs of triangles whose boxes may meet, each as (lower, higher), of those that `keep` keeps. `bounds` gives the
+    /// boxes of a triangle.
+    ///
+    /// It is couples that are searched for: half as many, in boxes hardly larger, so that each search saves three of four.
+    fn pairs<const ENDS: usize>(
+        &self,
+        bounds: impl Fn(&[u32; 3]) -> Boxes<ENDS> + Sync,
+        keep: impl Fn(u32, u32) -> bool + Sync,
+    ) -> Vec<(u32, u32)> {
+        let boxes: Vec<Boxes<ENDS>> = self.triangles.par_iter().with_min_len(PAIRS_PER_TASK).map(&bounds).collect();
+        let take = |s: u32, t: u32, pairs: &mut Vec<(u32, u32)>| {
+            if may_meet(&boxes[s as usize], &boxes[t as usize]) && keep(s, t) {
+                pairs.push((s.min(t), s.max(t)));
+            }
+        };
+        let within = self.couples.par_iter().with_min_len(PAIRS_PER_TASK).fold(Vec::new, |mut pairs, &[s, t]| {
+            if s != t {
+                take(s, t, &mut pairs);
+            }
+            pairs
+        });
+        let mut pairs: Vec<(u32, u32)> = within.reduce(Vec::new, |mut a, b| {
+            a.extend(b);
+            a
+        });
+        pairs.extend(self.tree.pairs(
+            |couple| {
+                let [s, t] = self.couples[couple as usize];
+                union(&boxes[s as usize], &boxes[t as usize])
+            },
+            |a, b, pairs| {
+                let ([s, t], [u, v]) = (self.couples[a as usize], self.couples[b as usize]);
+                take(s, u, pairs);
+                if u != v {
+                    take(s, v, pairs);
+                }
+                if s != t {
+                    take(t, u, pairs);
+                    if u != v {
+                        take(t, v, pairs);
+                    }
+                }
+            },
+        ));
+        pairs
     }
 
     /// Pairs of triangles, each as (lower, higher), that neither their boxes nor a star around a common corner prove
     /// apart, at one state or all the way between two.
     fn unproven_pairs<const ENDS: usize>(&self, ends: [&[Vec3A]; ENDS]) -> Vec<(u32, u32)> {
         if self.dimension == Dimension::Two {
-            let [from, to] = [ends[0], ends[ENDS - 1]];
-            return self.near_pairs(from, to, 0.0).into_iter().map(|(s, t)| (s.min(t), s.max(t))).collect();
+            return self.near_pairs(ends[0], ends[ENDS - 1], 0.0);
         }
         let proven = self.stars.proven(&self.triangles, ends);
-        let bounds = |t: u32| ends.map(|p| Bounds::of(self.triangles[t as usize].map(|v| p[v as usize])));
-        let keep = |s: u32, t: u32| {
-            let t_ids = &self.identities[t as usize];
-            !self.identities[s as usize].iter().any(|v| t_ids.contains(v) && proven[*v as usize])
-        };
-        self.tree.pairs(bounds, keep).into_iter().map(|(s, t)| (s.min(t), s.max(t))).collect()
+        let bounds = |corners: &[u32; 3]| ends.map(|p| Bounds::of(corners.map(|v| p[v as usize])));
+        self.pairs(bounds, |s, t| {
+            // Without branches as long as nothing is shared: each pair of boxes that meet comes by here.
+            let ([a, b, c], t_ids) = (self.identities[s as usize], self.identities[t as usize]);
+            let shares = |v: u32| t_ids.iter().fold(false, |any, &other| any | (other == v));
+            let [of_a, of_b, of_c] = [a, b, c].map(shares);
+            let is_proven = |shared: bool, v: u32| shared && proven[v as usize];
+            !((of_a | of_b | of_c) && (is_proven(of_a, a) || is_proven(of_b, b) || is_proven(of_c, c)))
+        })
     }
 
     /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart all the way of a straight
@@ -210,4 +262,23 @@ impl Surface {
             .flat_map_iter(|s| (s + 1..n).filter(move |&t| self.cross(&triangle(s), &triangle(t))).map(move |t| (s, t)))
             .collect()
     }
+}
+
+/// Triangles two by two, across edges that are the longest of both; those without such a neighbour are there twice.
+fn couples(triangles: &[[u32; 3]], identities: &[[u32; 3]], rest: &[Vec3A]) -> Vec<[u32; 2]> {
+    let longest = |t: usize| {
+        let at = triangles[t].map(|v| rest[v as usize]);
+        let length = |k: &usize| at[*k].distance_squared(at[(k + 1) % 3]);
+        let k = (0..3).max_by(|a, b| length(a).total_cmp(&length(b)))?;
+        let [a, b] = [identities[t][k], identities[t][(k + 1) % 3]];
+        Some((a.min(b), a.max(b)))
+    };
+    let mut edges: Vec<((u32, u32), u32)> =
+        (0..triangles.len()).filter_map(|t| Some((longest(t)?, t as u32))).collect();
+    edges.par_sort_unstable();
+    edges
+        .chunk_by(|(a, _), (b, _)| a == b)
+        .flat_map(|same| same.chunks(2))
+        .map(|c| [c[0].1, c[c.len() - 1].1])
+        .collect()
 }

@@ -61,10 +61,11 @@ impl Bounds {
 /// Where corners move along straight lines, two primitives whose boxes are apart along an axis at both ends, in the same
 /// order, are apart along it all the way: this says more than the boxes that hold whole motions, and moving together
 /// brings nothing near.
-type Boxes<const ENDS: usize> = [Bounds; ENDS];
+pub(super) type Boxes<const ENDS: usize> = [Bounds; ENDS];
 
+/// False only where an axis keeps two primitives apart all the way.
 #[inline]
-fn may_meet<const ENDS: usize>(a: &Boxes<ENDS>, b: &Boxes<ENDS>) -> bool {
+pub(super) fn may_meet<const ENDS: usize>(a: &Boxes<ENDS>, b: &Boxes<ENDS>) -> bool {
     let (mut below, mut above) = (BVec3A::TRUE, BVec3A::TRUE);
     for (a, b) in a.iter().zip(b) {
         below &= a.high.cmplt(b.low);
@@ -73,7 +74,7 @@ fn may_meet<const ENDS: usize>(a: &Boxes<ENDS>, b: &Boxes<ENDS>) -> bool {
     !(below | above).any()
 }
 
-fn union<const ENDS: usize>(a: &Boxes<ENDS>, b: &Boxes<ENDS>) -> Boxes<ENDS> {
+pub(super) fn union<const ENDS: usize>(a: &Boxes<ENDS>, b: &Boxes<ENDS>) -> Boxes<ENDS> {
     std::array::from_fn(|e| a[e].union(b[e]))
 }
 
@@ -162,17 +163,17 @@ impl Tree {
         best
     }
 
-    /// All pairs of primitives whose boxes meet, each once, in an order that does not depend on threads; of those that
-    /// `keep` keeps. `bounds` gives the boxes of a primitive at each end of a motion: pairs are left out that an axis
-    /// keeps apart all the way.
+    /// Hands all pairs of primitives whose boxes meet to `take`, each once, which adds what it makes of them to its list;
+    /// returns the lists, in an order that does not depend on threads. `bounds` gives the boxes of a primitive at each end
+    /// of a motion: pairs are left out that an axis keeps apart all the way.
     pub fn pairs<const ENDS: usize>(
         &self,
         bounds: impl Fn(u32) -> [Bounds; ENDS] + Sync,
-        keep: impl Fn(u32, u32) -> bool + Sync,
+        take: impl Fn(u32, u32, &mut Vec<(u32, u32)>) + Sync,
     ) -> Vec<(u32, u32)> {
         let boxes: Vec<Boxes<ENDS>> = self.order.par_iter().with_min_len(1024).map(|&p| bounds(p)).collect();
         let heap = self.heap(&boxes);
-        let search = Search { tree: self, boxes, heap, keep };
+        let search = Search { tree: self, boxes, heap, take };
         let tasks: Vec<Vec<(u32, u32)>> = (0..self.leaves.div_ceil(LEAVES_PER_TASK))
             .into_par_iter()
             .map(|task| {
@@ -188,22 +189,19 @@ impl Tree {
 }
 
 /// A tree with the boxes of one motion.
-struct Search<'a, const ENDS: usize, K> {
+struct Search<'a, const ENDS: usize, F> {
     tree: &'a Tree,
     /// Boxes of primitives, in the tree's order.
     boxes: Vec<Boxes<ENDS>>,
     heap: Vec<Boxes<ENDS>>,
-    keep: K,
+    take: F,
 }
 
-impl<const ENDS: usize, K: Fn(u32, u32) -> bool> Search<'_, ENDS, K> {
+impl<const ENDS: usize, F: Fn(u32, u32, &mut Vec<(u32, u32)>)> Search<'_, ENDS, F> {
     #[inline]
     fn take(&self, a: usize, b: usize, pairs: &mut Vec<(u32, u32)>) {
         if may_meet(&self.boxes[a], &self.boxes[b]) {
-            let (a, b) = (self.tree.order[a], self.tree.order[b]);
-            if (self.keep)(a, b) {
-                pairs.push((a, b));
-            }
+            (self.take)(self.tree.order[a], self.tree.order[b], pairs);
         }
     }
 
@@ -293,7 +291,7 @@ mod tests {
             let centres: Vec<Vec3A> = bounds.iter().map(|b| (b.low + b.high) * 0.5).collect();
             let tree = Tree::new(&centres);
             let mut found: Vec<(u32, u32)> =
-                tree.pairs(|p| [bounds[p as usize]], |_, _| true).into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
+                tree.pairs(|p| [bounds[p as usize]], |a, b, pairs| pairs.push((a, b))).into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
             found.sort_unstable();
             let n = bounds.len() as u32;
             let expected: Vec<(u32, u32)> = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)))

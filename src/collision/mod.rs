@@ -32,7 +32,7 @@ use crate::{
 pub use contact::Contacts;
 pub use growth::Growth;
 pub use guard::{Guarded, Watch};
-pub use shell::Shell;
+pub use shell::{Placed, Shell};
 
 /// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing
 /// (measured: the rotations, not the solve, are what converges slowly).

@@ -5,8 +5,8 @@ use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Growth, Guarded, Problem, Shell, areas::AreaCorrection, contact, contact_step, global_step, grow,
-    guard_step, largest_motion, local_step, near_step,
+    Asked, Contacts, Growth, Guarded, Placed, Problem, Shell, areas::AreaCorrection, contact, contact_step,
+    global_step, grow, guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
     diagnostics::Stopwatch,
@@ -59,6 +59,8 @@ pub struct Leap {
     pub positions: Vec<Vec3A>,
     /// Pairs of boundary nodes that were near each other when it began.
     pub near: Vec<(u32, u32)>,
+    /// The last keyframe, if a leap ended there.
+    pub start: Option<Placed>,
     /// λ and `[nodes]` positions of the keyframe before the last.
     pub before: Option<(f32, Vec<Vec3A>)>,
 }
@@ -251,10 +253,10 @@ fn find_contacts(
     }
 }
 
-type Placed<'a> =
+type Pulled<'a> =
     (&'a Lattice, &'a CollisionProblem, &'a Growing, &'a Warped, &'a Leap, &'a Targets, &'a Touching, &'a mut Proposed);
 
-fn propose(mut domains: Query<Placed>, mut watch: ResMut<Stopwatch>) {
+fn propose(mut domains: Query<Pulled>, mut watch: ResMut<Stopwatch>) {
     for (Lattice(complex), CollisionProblem(problem), Growing(growth), warped, leap, targets, touching, mut proposed) in
         &mut domains
     {

@@ -253,17 +253,21 @@ impl Shell {
         elements.filter(|(_, t)| !is_sound(t)).map(|(t, _)| t as u32).collect()
     }
 
-    /// The same for the state at the end of a straight motion of the nodes, and whether the way there is clear: proven at
-    /// every instant, but for pairs of triangles on which no proof came out; these are looked at in `samples`, parts of
-    /// the way.
-    pub fn crossings_after(&self, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> (Vec<(u32, u32)>, bool) {
-        let end = self.positions(to);
-        let mut doubtful = self.surface.doubtful_pairs(&self.positions(from), &end);
+    /// The same for the state at the end of a straight motion, and whether the way there is clear: proven at every
+    /// instant, but for pairs of triangles on which no proof came out; these are looked at in `samples`, parts of the way.
+    /// Both ends are given by the nodes and by this surface's vertices.
+    fn crossings_after(
+        &self,
+        [from, to]: [&[Vec3A]; 2],
+        [start, end]: [&[Vec3A]; 2],
+        samples: &[f32],
+    ) -> (Vec<(u32, u32)>, bool) {
+        let mut doubtful = self.surface.doubtful_pairs(start, end);
         doubtful.retain(|&pair| !self.is_inherited(pair));
         if doubtful.is_empty() {
             return (doubtful, true);
         }
-        let crossing = self.surface.crossing_pairs(&doubtful, &end);
+        let crossing = self.surface.crossing_pairs(&doubtful, end);
         let clear = samples.iter().all(|&part| {
             let between = blend(from, to, part);
             self.surface.crossing_pairs(&doubtful, &self.positions(&between)).is_empty()
@@ -274,6 +278,53 @@ impl Shell {
     /// The nodes that carry triangle `t`: where a crossing is.
     pub(crate) fn nodes_of_triangle(&self, t: u32) -> Vec<u32> {
         self.surface.triangles[t as usize].iter().flat_map(|&v| self.nodes_of(v)).collect()
+    }
+}
+
+/// A state with the surfaces it carries: the end of one way is the beginning of the next.
+#[derive(Debug)]
+pub struct Placed {
+    nodes: Vec<Vec3A>,
+    /// `[shells]` vertices; none where they are the nodes.
+    carried: Vec<Option<Vec<Vec3A>>>,
+}
+
+impl Placed {
+    /// Places the vertices of all shells.
+    pub fn new(shells: &[Shell], nodes: Vec<Vec3A>) -> Self {
+        let place = |shell: &Shell| match shell.positions(&nodes) {
+            Cow::Borrowed(_) => None,
+            Cow::Owned(vertices) => Some(vertices),
+        };
+        Self { carried: shells.iter().map(place).collect(), nodes }
+    }
+
+    /// `[nodes]` in cells.
+    pub fn nodes(&self) -> &[Vec3A] {
+        &self.nodes
+    }
+
+    /// `[nodes]` in cells.
+    pub fn into_nodes(self) -> Vec<Vec3A> {
+        self.nodes
+    }
+
+    fn vertices(&self, shell: usize) -> &[Vec3A] {
+        self.carried[shell].as_deref().unwrap_or(&self.nodes)
+    }
+
+    /// By shell: crossings of this state that were not there at rest, and whether the way to it is clear; pairs on which
+    /// no proof comes out are looked at in `samples`, parts of the way.
+    pub(crate) fn crossings_from(
+        &self,
+        from: &Self,
+        shells: &[Shell],
+        samples: &[f32],
+    ) -> Vec<(Vec<(u32, u32)>, bool)> {
+        let nodes = [from, self].map(Self::nodes);
+        let way =
+            |(k, shell): (usize, &Shell)| shell.crossings_after(nodes, [from.vertices(k), self.vertices(k)], samples);
+        shells.par_iter().enumerate().map(way).collect()
     }
 }
 

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::{
     certificate::{Certificate, certify, certify_way},
-    collision::{Shell, Watch, guard::guard},
+    collision::{Placed, Shell, Watch, guard::guard},
     edge::CHUNK,
     voxel::Complex,
 };
@@ -61,7 +61,7 @@ impl Film {
             let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
             if !from.certificate.certified() || to.way_is_clear {
                 k += 1;
-            } else if certify_way(complex, shells, &from.positions, &to.positions).1 {
+            } else if is_clear(complex, shells, from, to) {
                 self.keyframes[k].way_is_clear = true;
                 k += 1;
             } else if to.lambda - from.lambda > SHORTEST_STEP {
@@ -102,6 +102,12 @@ impl Film {
             }
         }
     }
+}
+
+/// Whether every blend of two keyframes is valid.
+fn is_clear(complex: &Complex, shells: &[Shell], from: &Keyframe, to: &Keyframe) -> bool {
+    let [from, to] = [from, to].map(|keyframe| Placed::new(shells, keyframe.positions.clone()));
+    certify_way(complex, shells, &from, &to).1
 }
 
 /// Straightens what flat surfaces need in a state; whether that changed any.

@@ -7,7 +7,7 @@ use super::{Film, Keyframe, straighten};
 use crate::{
     certificate::{Certificate, certify, certify_way},
     collision::{
-        Shell, Watch, guard,
+        Placed, Shell, Watch, guard,
         plugin::{BoundaryAtRisk, Growing, Leap, Shells, Sizes, Warped},
     },
     diagnostics::Stopwatch,
@@ -58,13 +58,20 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         }
         let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
         if growing.0.leaps() {
-            let landed = watch.time("certificate", || land(complex, shells, &sizes.0.size, warped, &leap.positions));
-            let Some(certificate) = landed else {
+            let landed = watch.time("certificate", || {
+                // Where the last way ended, most often.
+                let start = leap.start.take().filter(|start| start.nodes() == warped.as_slice());
+                let start = start.unwrap_or_else(|| Placed::new(shells, warped.clone()));
+                let end = Placed::new(shells, std::mem::take(&mut leap.positions));
+                land(complex, shells, &sizes.0.size, &start, &end).map(|certificate| (certificate, start, end))
+            });
+            let Some((certificate, start, end)) = landed else {
                 growing.0.walk();
                 continue;
             };
-            let from = std::mem::replace(warped, std::mem::take(&mut leap.positions));
-            leap.before = Some((growing.0.last_key(), from));
+            warped.copy_from_slice(end.nodes());
+            leap.before = Some((growing.0.last_key(), start.into_nodes()));
+            leap.start = Some(end);
             film.push(Keyframe {
                 lambda: growing.0.lambda(),
                 positions: warped.clone(),
@@ -96,7 +103,7 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
 
 /// The certificate of a leap's end, if all of the way there is valid and no element comes out flatter than the guard
 /// would let it.
-fn land(complex: &Complex, shells: &[Shell], size: &[f32], from: &[Vec3A], to: &[Vec3A]) -> Option<Certificate> {
+fn land(complex: &Complex, shells: &[Shell], size: &[f32], from: &Placed, to: &Placed) -> Option<Certificate> {
     let (certificate, clear) = certify_way(complex, shells, from, to);
     let least = size.iter().copied().fold(f32::INFINITY, f32::min);
     let floor = f64::from(guard::VOLUME_FLOOR * complex.dimension.measure(least));

@@ -4,7 +4,7 @@
 use glam::{DVec3, IVec3, Mat3A, Quat, Vec3A};
 use homunculus::{
     certificate::{Certificate, Surface, certify, certify_way},
-    collision::{Problem, Shell, contact_step, global_step, grow, guard, guard_step, local_step},
+    collision::{Placed, Problem, Shell, contact_step, global_step, grow, guard, guard_step, local_step},
     edge::EdgeSolver,
     film::blend,
     voxel::Complex,
@@ -163,7 +163,7 @@ proptest! {
         let turn = Mat3A::from_axis_angle(jitter(&mut random).normalize().into(), turn);
         let to: Vec<Vec3A> = complex.rest.iter().map(|p| turn * (*p + strength * jitter(&mut random))).collect();
         let shells = [Shell::skin(&complex)];
-        let (certificate, clear) = certify_way(&complex, &shells, &complex.rest, &to);
+        let (certificate, clear) = way(&complex, &shells, &complex.rest, &to);
         prop_assert_eq!(&certificate, &certify(&complex, &shells, &to));
         prop_assert!(strength > 0.02 || clear);
         for _ in 0..8 {
@@ -254,6 +254,12 @@ fn mote() -> (Complex, Vec<Vec3A>) {
     (complex, positions)
 }
 
+/// The certificate of a state, and whether the way to it is clear.
+fn way(complex: &Complex, shells: &[Shell], from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
+    let [from, to] = [from, to].map(|nodes| Placed::new(shells, nodes.to_vec()));
+    certify_way(complex, shells, &from, &to)
+}
+
 /// The mote moved up by so many cells.
 fn lifted(complex: &Complex, positions: &[Vec3A], by: f32) -> Vec<Vec3A> {
     let up = |body: u32| if body == complex.body[0] { Vec3A::Z * by } else { Vec3A::ZERO };
@@ -265,11 +271,11 @@ fn sabotage_bodies_that_change_places_have_no_clear_way() {
     let (complex, rest) = two_bars();
     let up = |body: u32| if body == complex.body[0] { 3.0 * Vec3A::Z } else { -3.0 * Vec3A::Z };
     let swapped: Vec<Vec3A> = rest.iter().zip(&complex.body).map(|(p, &body)| *p + up(body)).collect();
-    let (certificate, clear) = certify_way(&complex, &[Shell::skin(&complex)], &rest, &swapped);
+    let (certificate, clear) = way(&complex, &[Shell::skin(&complex)], &rest, &swapped);
     assert!(certificate.certified() && !clear);
     // A half-turn is a valid state too, but the straight way there goes through a line.
     let turned: Vec<Vec3A> = rest.iter().map(|p| *p * Vec3A::new(-1.0, -1.0, 1.0)).collect();
-    let (certificate, clear) = certify_way(&complex, &[Shell::skin(&complex)], &rest, &turned);
+    let (certificate, clear) = way(&complex, &[Shell::skin(&complex)], &rest, &turned);
     assert!(certificate.certified() && !clear);
 }
 
