@@ -6,7 +6,7 @@
 //! reason, Gastner, Seguy and More 2018).
 
 use bevy::prelude::Component;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
@@ -25,7 +25,13 @@ const ROUNDS: u32 = 24;
 const GOOD_ENOUGH: f64 = 0.004;
 
 /// A region's factor stays within this range and its inverse: what cannot be reached is not asked for ever louder.
-const MOST: f64 = 4.0;
+const MOST: f64 = 2.0;
+
+/// Corrections without a new best state after which it ends.
+const PATIENCE: u32 = 6;
+
+/// A state counts as a new best one if its error is less than this part of the last one's.
+const BETTER: f64 = 0.98;
 
 /// No region asks for more or less than this many times the area at once: a state that is still on its way would be asked
 /// for what it is about to reach anyway.
@@ -126,14 +132,25 @@ pub struct AreaCorrection {
     /// `[regions]` what each asks for is multiplied by this, as area.
     factors: Vec<f32>,
     rounds: u32,
+    /// The round, the error (root mean square over regions) and the `[nodes]` of the best state so far.
+    best: Option<(u32, f64, Vec<Vec3A>)>,
     finished: bool,
+}
+
+/// What a correction came to.
+#[derive(Debug)]
+pub enum Corrected {
+    /// `[cells]` importance to ask for from now on.
+    Ask(Vec<f32>),
+    /// Areas are right, or as near as they came: in the state given, `[nodes]`, where that is not the present one.
+    Finished(Option<Vec<Vec3A>>),
 }
 
 impl AreaCorrection {
     /// For a picture and the mesh it is drawn on.
     pub fn new(picture: &Flat, mesh: &Boundary) -> Self {
         let pieces = Pieces::new(picture, mesh);
-        Self { factors: vec![1.0; pieces.areas.len()], pieces, rounds: 0, finished: false }
+        Self { factors: vec![1.0; pieces.areas.len()], pieces, rounds: 0, best: None, finished: false }
     }
 
     /// What regions have of the mesh's triangles.
@@ -146,23 +163,36 @@ impl AreaCorrection {
         !self.finished && (settled || iteration.is_multiple_of(PERIOD))
     }
 
-    /// Corrects what regions ask for: `[cells]` new importance, or nothing where areas are right or enough was tried.
+    /// Corrects what regions ask for, until areas are right or do not become better.
     ///
-    /// `places`: where the mesh's vertices are, source units; `cell`: the area of a cell in pixels.
-    pub fn correct(&mut self, shares: &Shares, mesh: &Boundary, places: &[DVec3], cell: f64) -> Option<Vec<f32>> {
+    /// `nodes`: the present state; `places`: where the mesh's vertices are in it, source units; `cell`: the area of a cell
+    /// in pixels.
+    pub fn correct(
+        &mut self,
+        shares: &Shares,
+        mesh: &Boundary,
+        (nodes, places): (&[Vec3A], &[DVec3]),
+        cell: f64,
+    ) -> Corrected {
         let areas = self.pieces.areas(mesh, places);
         let is_resolved = |a: &Areas| a.rest >= LEAST_CELLS * cell && a.asked > 0.0 && a.achieved > 0.0;
-        let off = |a: &Areas| (a.achieved / a.asked - 1.0).abs();
-        let is_good = areas.iter().filter(|a| is_resolved(a)).all(|a| off(a) < GOOD_ENOUGH);
-        if is_good || self.rounds >= ROUNDS {
+        let off: Vec<f64> =
+            areas.iter().filter(|a| is_resolved(a)).map(|a| (a.achieved / a.asked - 1.0).abs()).collect();
+        let error = (off.iter().map(|e| e * e).sum::<f64>() / off.len().max(1) as f64).sqrt();
+        let is_best = self.best.as_ref().is_none_or(|(_, best, _)| error < BETTER * best);
+        if is_best {
+            self.best = Some((self.rounds, error, nodes.to_vec()));
+        }
+        let since = self.best.as_ref().map_or(0, |(round, ..)| self.rounds - round);
+        if off.iter().all(|&e| e < GOOD_ENOUGH) || since >= PATIENCE || self.rounds >= ROUNDS {
             self.finished = true;
-            return None;
+            return Corrected::Finished(self.best.take().filter(|_| !is_best).map(|(.., nodes)| nodes));
         }
         self.rounds += 1;
         for (factor, a) in self.factors.iter_mut().zip(&areas).filter(|(_, a)| is_resolved(a)) {
             let change = (a.asked / a.achieved).clamp(1.0 / MOST_AT_ONCE, MOST_AT_ONCE);
             *factor = (f64::from(*factor) * change).clamp(1.0 / MOST, MOST) as f32;
         }
-        Some(shares.sizes(&self.factors))
+        Corrected::Ask(shares.sizes(&self.factors))
     }
 }

@@ -202,6 +202,11 @@ impl Growth {
         self.iteration == 0
     }
 
+    /// Whether a flow comes before the next iteration, where there are flows: at each new λ, and now and then at λ = 1.
+    pub fn flows(&self) -> bool {
+        self.iteration == 0 || (self.at_end() && self.iteration == 1)
+    }
+
     /// Notes an iteration and its largest motion in cells.
     pub fn iterated(&mut self, motion: f32) {
         self.iteration += 1;
@@ -254,6 +259,11 @@ impl Growth {
     pub fn again(&mut self) {
         self.iteration = 1;
         self.motion = f32::INFINITY;
+    }
+
+    /// Settles no more: the state at λ = 1 is kept as it is.
+    pub fn rest(&mut self) {
+        self.iteration = self.patience;
     }
 
     /// Settles for less at λ = 1.

@@ -48,7 +48,9 @@ pub struct Guarded {
 pub enum Watch {
     /// At its end: enough for the skin, whose cells are thicker than a step is long.
     End,
-    /// On the way too: for sheets of the boundary, which may lie nearer to each other than a step is long and must not
+    /// At its end, and the surfaces on the way too: for long steps in the plane, which thin parts must not jump over.
+    Surfaces,
+    /// All of it on the way too: for sheets of the boundary, which may lie nearer to each other than a step is long and must not
     /// change places unseen, and for keyframes, whose blends are shown.
     Way,
 }
@@ -58,6 +60,7 @@ impl Watch {
     pub const fn parts(self) -> &'static [f32] {
         match self {
             Self::End => &[1.0],
+            Self::Surfaces => &[0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0],
             Self::Way => &[0.25, 0.5, 0.75, 1.0],
         }
     }
@@ -145,18 +148,25 @@ impl Step<'_> {
         false
     }
 
+    /// Nodes of solids inside others: a small one may be there after one step without having been seen to cross a skin.
+    fn enclosed(&self, state: &[Vec3A]) -> Vec<u32> {
+        let enclosed = enclosed_solids(self.complex, state);
+        if enclosed.is_empty() {
+            return Vec::new();
+        }
+        let cells = self.complex.corners.iter().zip(&self.complex.solid);
+        cells.filter(|(_, solid)| enclosed.contains(solid)).flat_map(|(corners, _)| *corners).collect()
+    }
+
     /// Nodes of what the step would break, of what has a node in `moved` if given.
     fn faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
         let mut marked = Vec::new();
         for &part in self.watch.parts() {
             let state: Cow<'_, [Vec3A]> =
                 if part < 1.0 { Cow::Owned(blend(self.current, proposed, part)) } else { Cow::Borrowed(proposed) };
-            marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
-            // A small body may be inside another after one step without having been seen to cross its skin.
-            let enclosed = enclosed_solids(self.complex, &state);
-            if !enclosed.is_empty() {
-                let cells = self.complex.corners.iter().zip(&self.complex.solid);
-                marked.extend(cells.filter(|(_, solid)| enclosed.contains(solid)).flat_map(|(corners, _)| *corners));
+            if part == 1.0 || self.watch == Watch::Way {
+                marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
+                marked.extend(self.enclosed(&state));
             }
             for (shell, near) in self.shells.iter().zip(self.near) {
                 shell.mark_crossings(near, &state, moved, &mut marked);

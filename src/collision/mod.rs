@@ -15,6 +15,7 @@
 
 pub mod areas;
 pub mod contact;
+mod flow;
 pub mod growth;
 pub mod guard;
 pub mod local;
@@ -30,6 +31,7 @@ use crate::{
     voxel::{Complex, Dimension},
 };
 pub use contact::Contacts;
+pub use flow::flow_step;
 pub use growth::Growth;
 pub use guard::{Guarded, Watch};
 pub use shell::{Placed, Shell};
@@ -42,7 +44,7 @@ const GLOBAL_STEPS: [u32; 2] = [1, 2];
 /// a wall of one cell is not skipped by one.
 const STEP_LIMIT: f32 = 0.5;
 
-/// The same in the plane: every committed state is checked whole and needs no way to it, and large parts have to flow far.
+/// The same in the plane, where large parts have to flow far: a long step is looked at on its way.
 const FLAT_STEP_LIMIT: f32 = 4.0;
 
 /// How near pairs are kept for the iterations of a leap, in radii.
@@ -246,7 +248,12 @@ pub fn guard_step(
         Dimension::Three => STEP_LIMIT,
     };
     guard::limit(positions, &mut proposed, |i| reach * asked.radius[i].min(1.0));
-    let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
+    let is_far = complex.dimension == Dimension::Two && largest_motion(positions, &proposed) > STEP_LIMIT;
+    let watch = match shells.len() {
+        2.. => Watch::Way,
+        _ if is_far => Watch::Surfaces,
+        _ => Watch::End,
+    };
     let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
     let motion = largest_motion(positions, &proposed);
     *positions = proposed;

@@ -5,8 +5,9 @@ use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Growth, Guarded, Placed, Problem, Shell, areas::AreaCorrection, contact, contact_step,
-    global_step, grow, guard_step, largest_motion, local_step, near_step,
+    Asked, Contacts, Growth, Guarded, Placed, Problem, Shell,
+    areas::{AreaCorrection, Corrected},
+    contact, contact_step, flow_step, global_step, grow, guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
     diagnostics::Stopwatch,
@@ -90,7 +91,7 @@ impl Plugin for CollisionPlugin {
         app.add_systems(
             Solve,
             (
-                (start, grow_sizes, leap).chain().in_set(Stage::Grow),
+                (start, grow_sizes, flow, leap).chain().in_set(Stage::Grow),
                 fit_cells.in_set(Stage::Local),
                 find_contacts.in_set(Stage::Contact),
                 propose.in_set(Stage::Global),
@@ -131,11 +132,11 @@ fn start(
     }
 }
 
-type Corrected<'a> = (
+type Regional<'a> = (
     &'a Domain,
     &'a Lattice,
     &'a PixelShares,
-    &'a Warped,
+    &'a mut Warped,
     &'a Shells,
     &'a mut CollisionProblem,
     &'a mut Growing,
@@ -144,21 +145,32 @@ type Corrected<'a> = (
 );
 
 /// Regions of a picture that have not their area yet ask for more or less, and λ = 1 settles once more.
-fn correct_areas(mut domains: Query<Corrected>, mut watch: ResMut<Stopwatch>) {
-    for (domain, lattice, shares, warped, shells, mut problem, mut growing, mut sizes, mut correction) in &mut domains {
+fn correct_areas(mut domains: Query<Regional>, mut watch: ResMut<Stopwatch>) {
+    for (domain, lattice, shares, mut warped, shells, mut problem, mut growing, mut sizes, mut correction) in
+        &mut domains
+    {
         if !growing.0.at_end() || !correction.is_due(growing.0.iteration(), growing.0.settled()) {
             continue;
         }
         let Some(binding) = shells.0.iter().find_map(Shell::binding) else { continue };
         let corrected = watch.time("grow", || {
             let cell = lattice.0.grid.cell_size.powi(2);
-            correction.correct(&shares.0, &domain.boundary, &binding.apply(&warped.0), cell)
+            let state = (warped.0.as_slice(), binding.apply(&warped.0));
+            correction.correct(&shares.0, &domain.boundary, (state.0, &state.1), cell)
         });
-        if let Some(importance) = corrected {
-            problem.0.importance = smoothed(&lattice.0, &importance);
-            sizes.0 = grow(&lattice.0, &problem.0, 1.0);
-            problem.0.weigh(&lattice.0, &sizes.0);
-            growing.0.again();
+        match corrected {
+            Corrected::Ask(importance) => {
+                problem.0.importance = smoothed(&lattice.0, &importance);
+                sizes.0 = grow(&lattice.0, &problem.0, 1.0);
+                problem.0.weigh(&lattice.0, &sizes.0);
+                growing.0.again();
+            }
+            Corrected::Finished(best) => {
+                if let Some(best) = best {
+                    warped.0 = best;
+                }
+                growing.0.rest();
+            }
         }
     }
 }
@@ -174,6 +186,22 @@ fn grow_sizes(
                 problem.0.weigh(complex, &sizes.0);
             });
         }
+    }
+}
+
+type Flowing<'a> = (&'a Lattice, &'a Sizes, &'a BoundaryAtRisk, &'a Growing, &'a mut Shells, &'a mut Warped);
+
+/// Flat domains begin each step of λ by a flow.
+fn flow(mut domains: Query<Flowing>, mut watch: ResMut<Stopwatch>) {
+    for (Lattice(complex), Sizes(asked), at_risk, Growing(growth), mut shells, mut warped) in &mut domains {
+        if growth.done() || complex.dimension != Dimension::Two || !growth.flows() {
+            continue;
+        }
+        let guarded = if at_risk.0 { shells.0.len() } else { 1 };
+        let proposed = watch.time("grow", || flow_step(complex, asked, &warped.0));
+        watch.time("guard", || {
+            guard_step(complex, asked, &mut shells.0[..guarded], &mut warped.0, proposed, &mut Vec::new())
+        });
     }
 }
 

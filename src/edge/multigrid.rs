@@ -123,13 +123,21 @@ impl Multigrid {
 
     /// Builds all levels of the Laplacian in which every edge weighs the sum of `[cells]` weights > 0 around it.
     pub fn of_cells(complex: &Complex, weights: &[f32]) -> Self {
+        Self::of_edges(complex, Vec::new(), |cell, _, _| weights[cell])
+    }
+
+    /// Builds all levels of Laplacian + diagonal. Every edge weighs the sum of what the cells around it give: `weight` is
+    /// asked for the cell, the corner where the edge begins, and its direction as corner bits. `mass` as in
+    /// [`with_mass`](Self::with_mass).
+    pub fn of_edges(complex: &Complex, mass: Vec<f32>, weight: impl Fn(usize, usize, usize) -> f32) -> Self {
         let mut off_diagonal = vec![[0.0_f32; NEIGHBOURS]; complex.nodes()];
         let mut diagonal = vec![0.0_f32; complex.nodes()];
         let count = complex.dimension.corners();
-        for (corners, &weight) in complex.corners.iter().zip(weights) {
+        for (cell, corners) in complex.corners.iter().enumerate() {
             for corner in 0..count {
                 for direction in (1..count).filter(|direction| corner & direction == 0) {
                     let [i, j] = [corner, corner | direction].map(|k| corners[k] as usize);
+                    let weight = weight(cell, corner, direction);
                     for (node, slot) in [(i, direction - 1), (j, direction + 6)] {
                         off_diagonal[node][slot] -= weight;
                         diagonal[node] += weight;
@@ -137,7 +145,10 @@ impl Multigrid {
                 }
             }
         }
-        Self::of_finest(complex, off_diagonal, diagonal, Vec::new())
+        for (diagonal, mass) in diagonal.iter_mut().zip(&mass) {
+            *diagonal += mass;
+        }
+        Self::of_finest(complex, off_diagonal, diagonal, mass)
     }
 
     fn of_finest(complex: &Complex, off_diagonal: Vec<[f32; NEIGHBOURS]>, diagonal: Vec<f32>, mass: Vec<f32>) -> Self {

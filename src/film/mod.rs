@@ -13,7 +13,7 @@ use crate::{
     certificate::{Certificate, certify, certify_way},
     collision::{Placed, Shell, Watch, guard::guard},
     edge::CHUNK,
-    voxel::Complex,
+    voxel::{Complex, Dimension},
 };
 
 /// One certified state.
@@ -33,10 +33,15 @@ pub struct Keyframe {
 #[derive(Debug, Clone, Default)]
 pub struct Film {
     keyframes: Vec<Keyframe>,
+    /// λ and positions of states that the growth passed between keyframes whose way is not known to be clear, ascending.
+    passed: Vec<(f32, Vec<Vec3A>)>,
+    /// Those since the last keyframe.
+    passing: Vec<Vec<Vec3A>>,
 }
 
-/// Between keyframes nearer in λ than this no other is put.
-const SHORTEST_STEP: f32 = 0.03;
+/// Between keyframes nearer in λ than this no other is put; in the plane, where what was passed lies near to each other,
+/// than the second.
+const SHORTEST_STEP: [f32; 2] = [0.03, 0.001];
 
 impl Film {
     /// Adds the next keyframe; its λ must be above the last one's, or equal, which replaces it.
@@ -44,7 +49,28 @@ impl Film {
         if self.keyframes.last().is_some_and(|last| last.lambda >= keyframe.lambda) {
             self.keyframes.pop();
         }
+        let mut passing = std::mem::take(&mut self.passing);
+        // What came after a state that was returned to is no way there.
+        let end = passing.iter().position(|positions| *positions == keyframe.positions).unwrap_or(passing.len());
+        passing.truncate(end);
+        if let (Some(last), false) = (self.keyframes.last(), keyframe.way_is_clear) {
+            let step = (keyframe.lambda - last.lambda) / (passing.len() + 1) as f32;
+            let lambda = |k: usize| last.lambda + step * (k + 1) as f32;
+            self.passed.extend(passing.into_iter().enumerate().map(|(k, positions)| (lambda(k), positions)));
+        }
         self.keyframes.push(keyframe);
+    }
+
+    /// Keeps a state on the way to the next keyframe, in case that the straight way there is not clear.
+    pub fn pass(&mut self, positions: Vec<Vec3A>) {
+        self.passing.push(positions);
+    }
+
+    /// The middle one of the states that were passed between two λ, if there are any.
+    fn take_passed(&mut self, from: f32, to: f32) -> Option<(f32, Vec<Vec3A>)> {
+        let first = self.passed.partition_point(|(lambda, _)| *lambda <= from);
+        let end = self.passed.partition_point(|(lambda, _)| *lambda < to);
+        (first < end).then(|| self.passed.remove(first.midpoint(end)))
     }
 
     /// All keyframes.
@@ -53,23 +79,42 @@ impl Film {
     }
 
     /// Makes every blend of two neighbouring keyframes valid where it is looked at ([`Watch::Way`]): by new keyframes
-    /// between them, and where that does not help, by drawing the later one back to what can be reached from the earlier.
+    /// between them, the states that were passed there first, and where that does not help, by drawing the later one back
+    /// to what can be reached from the earlier.
     pub fn mend(&mut self, complex: &Complex, shells: &mut [Shell], size: &[f32]) {
         self.straighten(complex, shells);
+        let shortest = SHORTEST_STEP[usize::from(complex.dimension == Dimension::Two)];
         let mut k = 1;
         while k < self.keyframes.len() {
             let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
             if !from.certificate.certified() || to.way_is_clear {
                 k += 1;
-            } else if is_clear(complex, shells, from, to) {
+                continue;
+            }
+            if is_clear(complex, shells, from, to) {
                 self.keyframes[k].way_is_clear = true;
                 k += 1;
-            } else if to.lambda - from.lambda > SHORTEST_STEP {
+                continue;
+            }
+            let [a, b] = [from.lambda, to.lambda];
+            if let Some((lambda, positions)) = self.take_passed(a, b) {
+                let certificate = certify(complex, shells, &positions);
+                if certificate.certified() {
+                    self.keyframes.insert(k, Keyframe { lambda, positions, certificate, way_is_clear: false });
+                }
+                continue;
+            }
+            if self.straighten_blends(shells) {
+                self.certify_again(complex, shells);
+                k = 1;
+                continue;
+            }
+            let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
+            if b - a > shortest {
                 let keyframe = between(complex, shells, size, from, to);
-                self.keyframes[k].way_is_clear = false;
                 self.keyframes.insert(k, keyframe);
             } else {
-                self.keyframes[k] = reached(complex, shells, size, from, to.lambda, to.positions.clone());
+                self.keyframes[k] = reached(complex, shells, size, from, b, to.positions.clone());
                 k += 1;
             }
         }
@@ -77,29 +122,43 @@ impl Film {
 }
 
 impl Film {
-    /// Makes a flat surface follow the complex where it must in any keyframe or blend that is looked at, and certifies all
-    /// keyframes anew where that changed them.
+    /// Makes a flat surface follow the complex where it must in any state that was solved, and certifies all keyframes
+    /// anew where that changed them.
     fn straighten(&mut self, complex: &Complex, shells: &mut [Shell]) {
+        let mut changed = false;
+        let solved = || {
+            let keyframes = self.keyframes.iter().map(|k| &k.positions);
+            keyframes.chain(self.passed.iter().map(|(_, positions)| positions))
+        };
+        while solved().fold(false, |again, positions| straighten(shells, positions) || again) {
+            changed = true;
+        }
+        if changed {
+            self.certify_again(complex, shells);
+        }
+    }
+
+    /// The same for the blends between keyframes whose ways are not clear; whether that changed any.
+    fn straighten_blends(&self, shells: &mut [Shell]) -> bool {
         let mut changed = false;
         let mut again = true;
         while again {
             again = false;
-            for k in 0..self.keyframes.len() {
-                let at = &self.keyframes[k].positions;
-                again |= straighten(shells, at);
-                let Some(next) = self.keyframes.get(k + 1) else { continue };
+            for pair in self.keyframes.windows(2).filter(|pair| !pair[1].way_is_clear) {
                 for part in (1..8).map(|k| k as f32 / 8.0) {
-                    let state = blend(at, &next.positions, part);
-                    again |= straighten(shells, &state);
+                    again |= straighten(shells, &blend(&pair[0].positions, &pair[1].positions, part));
                 }
             }
             changed |= again;
         }
-        if changed {
-            for keyframe in &mut self.keyframes {
-                keyframe.certificate = certify(complex, shells, &keyframe.positions);
-                keyframe.way_is_clear = false;
-            }
+        changed
+    }
+
+    /// Certifies all keyframes anew, for a surface follows them in another way.
+    fn certify_again(&mut self, complex: &Complex, shells: &[Shell]) {
+        for keyframe in &mut self.keyframes {
+            keyframe.certificate = certify(complex, shells, &keyframe.positions);
+            keyframe.way_is_clear = false;
         }
     }
 }

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use glam::Vec3A;
 
-use super::{Film, Keyframe, straighten};
+use super::{Film, Keyframe, is_clear, straighten};
 use crate::{
     certificate::{Certificate, certify, certify_way},
     collision::{
@@ -12,7 +12,7 @@ use crate::{
     },
     diagnostics::Stopwatch,
     schedule::{Solve, Stage},
-    voxel::{Complex, plugin::Lattice},
+    voxel::{Complex, Dimension, plugin::Lattice},
 };
 
 /// The film of a domain.
@@ -53,10 +53,18 @@ type Filmed<'a> = (
 fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
     for (Lattice(complex), sizes, mut growing, mut warped, mut shells, mut reel, mut at_risk, mut leap) in &mut domains
     {
-        if growing.0.done() || !growing.0.settled() {
+        let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
+        if growing.0.done() {
             continue;
         }
-        let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
+        // In the plane parts flow far between two keyframes, further than straight ways lead.
+        let is_flat = complex.dimension == Dimension::Two;
+        if is_flat && (growing.0.settled() && !growing.0.is_key() || growing.0.at_end() && growing.0.iteration() == 1) {
+            film.pass(warped.clone());
+        }
+        if !growing.0.settled() {
+            continue;
+        }
         if growing.0.leaps() {
             let landed = watch.time("certificate", || {
                 // Where the last way ended, most often.
@@ -96,7 +104,12 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
             certificate = draw_back(complex, &sizes.0.size, shells, film, warped, &mut watch);
         }
         leap.before = film.keyframes().last().map(|k| (k.lambda, k.positions.clone()));
-        film.push(Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate, way_is_clear: false });
+        let (lambda, positions) = (growing.0.lambda(), warped.clone());
+        let mut keyframe = Keyframe { lambda, positions, certificate, way_is_clear: false };
+        if is_flat && let Some(last) = film.keyframes().last() {
+            keyframe.way_is_clear = watch.time("certificate", || is_clear(complex, shells, last, &keyframe));
+        }
+        film.push(keyframe);
         growing.0.advance();
     }
 }

@@ -47,8 +47,8 @@ static SCENES: [Kept; 4] = [
     Kept {
         entry: Entry {
             name: "africa",
-            one_line: "a map of Africa whose countries grow with the density of their population",
-            reference: "importance ∝ (population / area)^(1/4), half of the exponent at which area would be population; population 2014: World Bank, World Development Indicators, SP.POP.TOTL (no figure for Eritrea and Western \
+            one_line: "a map of Africa whose countries have the area of their population",
+            reference: "importance ∝ (population / area)^(1/2), so that area becomes population; population 2014: World Bank, World Development Indicators, SP.POP.TOTL (no figure for Eritrea and Western \
                         Sahara, which keep their size); outlines after Natural Earth 1:110m, public domain",
             resolution: 256,
             fidelity: 1.0,
