@@ -130,7 +130,7 @@ impl Film {
             let keyframes = self.keyframes.iter().map(|k| &k.positions);
             keyframes.chain(self.passed.iter().map(|(_, positions)| positions))
         };
-        while solved().fold(false, |again, positions| straighten(shells, positions) || again) {
+        while solved().filter(|positions| straighten(shells, positions)).count() > 0 {
             changed = true;
         }
         if changed {
