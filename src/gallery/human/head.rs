@@ -27,8 +27,7 @@ impl Head {
     pub(crate) fn new() -> Self {
         let s = Station::sym;
         let mask = [
-            s(-106.0, 13.0, 82.0, 38.0, 2.0),
-            s(-98.0, 22.0, 90.0, 20.0, 2.0),
+            s(-99.0, 20.0, 88.0, 22.0, 2.0),
             s(-86.0, 32.0, 94.0, 5.0, 2.0),
             s(-70.0, 41.0, 95.0, -8.0, 2.0),
             s(-45.0, 51.0, 94.5, -15.0, 2.0),
@@ -38,7 +37,7 @@ impl Head {
             s(45.0, 60.0, 88.0, -15.0, 2.1),
             s(65.0, 50.0, 74.0, -5.0, 2.0),
         ];
-        Self { mask: Loft::new(&mask, [9.0, 30.0]), face: Face::new() }
+        Self { mask: Loft::new(&mask, [14.0, 30.0]), face: Face::new() }
     }
 
     /// Near-distance in metres; `p` in the body's space, either half.
@@ -52,7 +51,7 @@ impl Head {
         let jaw =
             chain(q, &[(v(44.0, -42.0, 4.0), 11.0), (v(38.0, -70.0, 18.0), 10.5), (v(13.0, -100.0, 74.0), 11.0)], 16.0);
         f = union(f, jaw, 30.0);
-        f = union(f, ellipsoid(q, v(38.0, -50.0, 46.0), v(21.0, 33.0, 36.0)), 36.0);
+        f = union(f, ellipsoid(q, v(39.0, -46.0, 48.0), v(22.5, 37.0, 37.0)), 36.0);
         f = union(f, ellipsoid(q, v(0.0, -99.0, 84.0), v(18.0, 13.5, 14.5)), 24.0);
         let cheekbone = round_cone(q, v(42.0, -26.0, 66.0), v(60.0, -14.0, 22.0), 16.0, 9.0);
         f = union(f, cheekbone, 36.0);

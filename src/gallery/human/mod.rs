@@ -24,7 +24,7 @@ pub use values::{Table, read_values, scenes};
 
 use glam::Vec3;
 
-use super::implicit::union;
+use super::implicit::{ramp, union};
 
 /// All parts of the body.
 #[derive(Debug)]
@@ -58,12 +58,13 @@ impl Human {
         if q.y > 0.74 && q.y < 1.66 && q.x < 0.34 {
             f = f.min(self.torso.distance(p));
         }
-        if q.y > 1.44 && q.x < 0.18 {
-            f = union(f, self.head.distance(p), 0.030);
+        if q.y > 1.40 && q.x < 0.18 {
+            f = union(f, self.head.distance(p), 0.038);
         }
         if q.y < 1.02 && q.x < 0.36 {
             // Thighs and trunk flow into each other, less so in the groin and below the buttock.
-            f = union(f, self.leg.distance(q), 0.05);
+            let melt = 0.045 + 0.045 * ramp(q.x, 0.07, 0.15);
+            f = union(f, self.leg.distance(q), melt);
         }
         if q.x > 0.08 && q.y > 0.6 {
             f = union(f, self.arm.distance(q), 0.045);
@@ -82,13 +83,15 @@ impl Human {
         let tip = |digit: &Finger| near(self.arm.hand.frame.world(digit.knots[3].0), 0.013, 0.11, 0.0016);
         let tips = self.arm.hand.fingers.iter().map(tip);
         [
-            near(Vec3::new(0.032, 1.638, 0.090), 0.018, 0.19, 0.0012),
+            near(Vec3::new(0.032, 1.638, 0.090), 0.018, 0.19, 0.0011),
             near(Vec3::new(0.0, 1.568, 0.103), 0.028, 0.23, 0.0015),
             near(Vec3::new(0.0, 1.592, 0.110), 0.016, 0.23, 0.0014),
-            near(Vec3::new(0.082, 1.620, -0.012), 0.034, 0.20, 0.0020),
+            near(Vec3::new(0.082, 1.620, -0.012), 0.034, 0.20, 0.0017),
             near(Vec3::new(0.0, 1.047, 0.105), 0.012, 0.16, 0.0040),
+            near(Vec3::new(0.0, 0.870, -0.105), 0.045, 0.30, 0.0055),
             near(hand, 0.125, 0.36, 0.0033),
-            near(Vec3::new(0.170, 0.02, 0.09), 0.130, 0.45, 0.0040),
+            near(Vec3::new(0.165, 0.02, 0.08), 0.110, 0.42, 0.0040),
+            near(Vec3::new(0.168, 0.01, 0.140), 0.050, 0.35, 0.0029),
         ]
         .into_iter()
         .chain(tips)

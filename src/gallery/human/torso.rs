@@ -12,6 +12,7 @@ pub struct Torso {
     trunk: Loft,
     neck: Loft,
     clavicle: Vec<(Vec3, f32)>,
+    hollow: Vec<(Vec3, f32)>,
 }
 
 impl Torso {
@@ -19,7 +20,7 @@ impl Torso {
     /// 0.63 of the height, hips 0.34 at 0.53, chest 0.32 at 0.73, neck 0.36 around.
     pub(crate) fn new() -> Self {
         let trunk = [
-            Station::sym(0.840, 0.152, 0.056, -0.075, 2.1),
+            Station::sym(0.840, 0.152, 0.056, -0.082, 2.1),
             Station::sym(0.890, 0.169, 0.084, -0.094, 2.1),
             Station::sym(0.935, 0.169, 0.098, -0.101, 2.2),
             Station::sym(0.980, 0.163, 0.103, -0.097, 2.2),
@@ -43,15 +44,17 @@ impl Torso {
         ];
         let k = |x: f32, y: f32, z: f32, r: f32| (Vec3::new(x, y, z), r);
         let clavicle = [
-            k(0.022, 1.419, 0.054, 0.011),
-            k(0.065, 1.425, 0.052, 0.018),
-            k(0.110, 1.440, 0.030, 0.019),
-            k(0.160, 1.452, -0.004, 0.021),
+            k(0.020, 1.418, 0.0, 0.012),
+            k(0.062, 1.420, 0.0, 0.013),
+            k(0.110, 1.431, 0.0, 0.014),
+            k(0.158, 1.436, 0.0, 0.017),
         ];
+        let hollow = [k(0.040, 1.441, 0.0, 0.016), k(0.072, 1.444, 0.0, 0.020), k(0.108, 1.455, 0.0, 0.017)];
         Self {
             trunk: Loft::new(&trunk, [0.05, 0.05]),
             neck: Loft::new(&neck, [0.05, 0.03]),
             clavicle: curve(&clavicle, 4),
+            hollow: curve(&hollow, 4),
         }
     }
 
@@ -61,17 +64,19 @@ impl Torso {
         let mut f = self.trunk.distance(q);
         f = union(f, self.back(q), 0.07);
         f = union(f, self.front(p, q), 0.045);
-        f = union(f, buttocks(p), 0.045);
+        f = union(f, buttocks(p), 0.050);
         f = union(f, self.neck(q), 0.05);
         f = union(f, trapezius(q), 0.050);
         // Furrow of the spine, line of the belly, navel, notch above the breastbone.
         let back = Vec2::new(p.x, 0.0).length();
         f += 0.0065 * bump(back, 0.046) * bump(p.y - 1.17, 0.25) * f32::from(p.z < 0.0);
         f += 0.0026 * bump(back, 0.034) * bump(p.y - 1.17, 0.15) * f32::from(p.z > 0.0);
-        f += 0.0120 * bump(p.distance(Vec3::new(0.0, 1.047, 0.108)), 0.014);
+        f += 0.0090 * bump(p.distance(Vec3::new(0.0, 1.047, 0.108)), 0.015);
         f += 0.0050 * bump(p.distance(Vec3::new(0.0, 1.432, 0.046)), 0.026);
-        // Collar bones, the dimples above the buttocks.
-        f -= 0.0050 * ramp(q.x, 0.0, 0.08) * stroke(q, &self.clavicle);
+        // Collar bones and the hollows above them, drawn as seen from the front; the dimples above the buttocks.
+        let (front, flat) = (ramp(p.z, -0.035, 0.0), q.with_z(0.0));
+        f -= 0.0046 * front * ramp(q.x, 0.005, 0.035) * stroke(flat, &self.clavicle);
+        f += 0.0040 * front * stroke(flat, &self.hollow);
         f + 0.0022 * bump(q.distance(Vec3::new(0.045, 0.990, -0.098)), 0.032)
     }
 
@@ -126,8 +131,8 @@ fn trapezius(q: Vec3) -> f32 {
     let knots = [
         (v(0.018, 1.550, -0.042), 0.022),
         (v(0.052, 1.470, -0.052), 0.031),
-        (v(0.105, 1.437, -0.046), 0.032),
-        (v(0.165, 1.430, -0.032), 0.030),
+        (v(0.105, 1.430, -0.046), 0.031),
+        (v(0.165, 1.411, -0.032), 0.029),
     ];
     chain(q, &knots, 0.05)
 }
@@ -135,11 +140,11 @@ fn trapezius(q: Vec3) -> f32 {
 fn buttocks(p: Vec3) -> f32 {
     let side = |s: f32| {
         let q = Vec3::new(p.x * s, p.y, p.z);
-        let seat = ellipsoid(q, Vec3::new(0.074, 0.876, -0.064), Vec3::new(0.080, 0.080, 0.079));
+        let seat = ellipsoid(q, Vec3::new(0.076, 0.874, -0.060), Vec3::new(0.079, 0.086, 0.079));
         let upper = ellipsoid(q, Vec3::new(0.082, 0.950, -0.046), Vec3::new(0.070, 0.068, 0.062));
         union(seat, upper, 0.07)
     };
     let both = union(side(1.0), side(-1.0), 0.012);
-    let cleft = ellipsoid(p, Vec3::new(0.0, 0.880, -0.150), Vec3::new(0.006, 0.080, 0.060));
+    let cleft = ellipsoid(p, Vec3::new(0.0, 0.884, -0.152), Vec3::new(0.009, 0.085, 0.060));
     cut(both, cleft, 0.02)
 }
