@@ -1,0 +1,79 @@
+//! Contract of `homunculus gallery --render`: a folder that opens from the disk, with four pictures of each scene, in which
+//! crossings are red where Eq. 1 alone crosses and nowhere else; faults are told on the page and by the exit code.
+#![cfg(feature = "record")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
+#![expect(clippy::print_stdout, reason = "skipping is said aloud")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use image::RgbImage;
+
+fn gallery(folder: &Path, arguments: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_homunculus"))
+        .arg("gallery")
+        .args(arguments.split_whitespace())
+        .current_dir(folder)
+        .env("XDG_RUNTIME_DIR", folder)
+        .output()
+        .unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Pixels as red as crossings are marked.
+fn red(picture: &RgbImage) -> usize {
+    picture.pixels().filter(|p| p.0[0] > 120 && p.0[1] < 60 && p.0[2] < 60).count()
+}
+
+#[test]
+fn a_page_shows_what_was_asked_achieved_and_proven() {
+    if let Err(error) = homunculus::view::adapter() {
+        println!("skipped: {error}");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let output = gallery(folder.path(), "--render page hand gallery:snake");
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    for line in ["hand: certified", "snake: certified"] {
+        assert!(said(&output).contains(line), "{}", said(&output));
+    }
+    let page = folder.path().join("page");
+    let html = std::fs::read_to_string(page.join("index.html")).unwrap();
+    assert!(html.contains("2 of 2") && html.contains("modelled here"), "{html}");
+    for name in ["hand", "snake"] {
+        let picture = |which: &str| {
+            let file = format!("pictures/{name}-{which}.jpg");
+            assert!(html.contains(&format!("src=\"{file}\"")), "{file}");
+            image::open(page.join(file)).unwrap().to_rgb8()
+        };
+        let [rest, classic, ours] = ["rest", "classic", "ours"].map(picture);
+        assert!(red(&classic) > red(&rest) + 20, "{name}: the crossings of Eq. 1 are seen");
+        assert_ne!(rest, ours);
+        let thumbnail = std::fs::metadata(page.join(format!("thumbnails/{name}.jpg"))).unwrap();
+        assert!(thumbnail.len() <= 15_000, "{name}: {} bytes", thumbnail.len());
+    }
+    // What a page names lies beside it.
+    let named: Vec<&str> = html.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert_eq!(named.len(), 8);
+    assert!(named.iter().all(|file| page.join(file).is_file()) && !html.contains("://"));
+    let sheet = image::open(page.join("contact-sheet.png")).unwrap().to_rgb8();
+    assert!(sheet.width() > 1900 && red(&sheet) > 0);
+    let ink = sheet.enumerate_pixels().filter(|(_, y, p)| *y < 70 && p.0[0] < 100).count();
+    assert!(ink > 200, "the sheet has a title: {ink}");
+}
+
+#[test]
+fn an_unknown_scene_is_named_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = gallery(folder.path(), "--render page hand cat");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("`cat`") && said(&output).contains("crocodile"), "{}", said(&output));
+    assert!(!folder.path().join("page").exists());
+    let listed = gallery(folder.path(), "hand cat");
+    assert_eq!(listed.status.code(), Some(2));
+    let listed = gallery(folder.path(), "hand");
+    assert_eq!(String::from_utf8_lossy(&listed.stdout).lines().count(), 1);
+}
