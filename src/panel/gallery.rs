@@ -59,8 +59,8 @@ pub(super) fn show(ctx: &Context, open: Option<&Source>, choice: &mut Choice, wi
     }
 }
 
-/// Which part of the window a scene is.
-fn card_id(name: &str) -> Id {
+/// Which part of the window a scene of the gallery is.
+pub fn card_id(name: &str) -> Id {
     Id::new(("gallery", name))
 }
 
@@ -116,62 +116,4 @@ fn textures(ctx: &Context) -> Textures {
     let all: Textures = Arc::new(gallery::everything().map(texture).collect());
     ctx.data_mut(|data| data.insert_temp(id, all.clone()));
     all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use bevy_egui::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
-
-    /// One frame of a window of 1280 × 720 with these events.
-    fn frame(ctx: &Context, choice: &mut Choice, events: Vec<Event>) -> Vec<Wish> {
-        let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, Vec2::new(1280.0, 720.0)));
-        let mut wishes = Vec::new();
-        let _ = ctx.run_ui(RawInput { screen_rect, events, ..RawInput::default() }, |ui| {
-            show(ui.ctx(), None, choice, &mut wishes);
-        });
-        wishes
-    }
-
-    fn click(ctx: &Context, choice: &mut Choice, pos: Pos2) -> Vec<Wish> {
-        let button =
-            |pressed| Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE };
-        let mut wishes = frame(ctx, choice, vec![Event::PointerMoved(pos)]);
-        wishes.extend(frame(ctx, choice, vec![button(true)]));
-        wishes.extend(frame(ctx, choice, vec![button(false)]));
-        wishes
-    }
-
-    #[test]
-    fn every_scene_has_a_small_picture() {
-        for entry in gallery::everything() {
-            let bytes = thumbnail(entry.name).unwrap_or_else(|| panic!("{} has no thumbnail", entry.name));
-            assert!(bytes.len() <= 15_000, "{}: {} bytes", entry.name, bytes.len());
-            let picture = image::load_from_memory(bytes).expect("a JPEG");
-            assert!(picture.width() == picture.height() && picture.width() >= 128, "{}", entry.name);
-        }
-        assert!(thumbnail("cat").is_none());
-    }
-
-    #[test]
-    fn a_click_opens_the_scene_and_closes_the_gallery() {
-        let ctx = Context::default();
-        let mut choice = Choice { gallery: true, ..Choice::default() };
-        // Windows are laid out in their first frame.
-        for _ in 0..3 {
-            assert!(frame(&ctx, &mut choice, Vec::new()).is_empty());
-        }
-        for entry in gallery::everything() {
-            let rect = ctx.read_response(card_id(entry.name)).expect("a card").rect;
-            assert!(rect.is_positive() && rect.max.x < 1280.0 && rect.max.y < 720.0, "{} at {rect:?}", entry.name);
-        }
-        let elephant = ctx.read_response(card_id("elephant")).expect("a card").rect.center();
-        let wishes = click(&ctx, &mut choice, elephant);
-        assert_eq!(wishes, [Wish::Open(Source::Gallery("elephant".into()))]);
-        assert!(!choice.gallery);
-        // Sabotage: beside the gallery, and where it is closed, a click opens nothing.
-        assert!(click(&ctx, &mut choice, elephant).is_empty());
-        choice.gallery = true;
-        assert!(click(&ctx, &mut choice, Pos2::new(4.0, 4.0)).is_empty() && choice.gallery);
-    }
 }

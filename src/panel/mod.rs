@@ -18,6 +18,7 @@ mod top;
 mod view;
 
 pub use export::{ExportChoice, MESH_FORMATS};
+pub use gallery::card_id;
 pub use player::{Easing, Player, Repeat};
 pub use solver::Pending;
 

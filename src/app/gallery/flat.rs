@@ -13,7 +13,7 @@ use crate::boundary::Regions;
 use crate::export::report::{AreaReport, Report};
 use crate::gallery::{self, Entry, picture::PictureScene};
 use crate::picture::render::{Canvas, Painter, mark};
-use crate::picture::{Picture, Pixels, areas};
+use crate::picture::{FlatMesh, Picture, Pixels, areas};
 use crate::scene::{Scene, Source};
 use crate::schedule::{self, Domain, Settings};
 use crate::view::{Legend, Looks, Mode};
@@ -68,7 +68,9 @@ pub(super) fn exhibit(entry: &Entry) -> Result<Found> {
     let scale = f64::from(SIDE - 2 * MARGIN) / f64::from(whole.size.max_element());
     let canvas = Canvas::around(&picture, &drawn.mesh, states, scale)?;
     let (own, map) = (Painter::new(&picture, &drawn.mesh), Painter::new(&coloured, &drawn.mesh));
-    let mut faulty = own.render(&classic, &canvas);
+    let mut faulty = own.render(&classic, &canvas).into_eight();
+    redden_overlaps(&mut faulty, &canvas, &drawn.mesh, &classic);
+    let mut faulty = Pixels::Eight(faulty);
     mark(&mut faulty, &canvas, &crossings(&solved, &linear, drawn.height), MARK, CROSSING);
     let pictures = [
         own.render(&drawn.mesh.rest, &canvas),
@@ -80,12 +82,43 @@ pub(super) fn exhibit(entry: &Entry) -> Result<Found> {
     Ok(Found { pictures, legend: Some(legend), report, seconds })
 }
 
-/// The picture in the colours of its importance.
+/// Reddens what more than one triangle covers: crossings of outlines alone are too small to be seen.
+fn redden_overlaps(picture: &mut RgbaImage, canvas: &Canvas, mesh: &FlatMesh, places: &[DVec2]) {
+    let (width, height) = picture.dimensions();
+    let mut covered = vec![0_u8; (width * height) as usize];
+    for corners in &mesh.triangles {
+        let [a, b, c] = corners.map(|v| canvas.from_plane(places[v as usize]));
+        let low = a.min(b).min(c).max(DVec2::ZERO).as_uvec2();
+        let high = a.max(b).max(c).max(DVec2::ZERO).ceil().as_uvec2();
+        for (x, y) in (low.y..high.y.min(height)).flat_map(|y| (low.x..high.x.min(width)).map(move |x| (x, y))) {
+            let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| (to - from).perp_dot(p - from));
+            // Those on an edge belong to neither side of it, so that neighbours never count twice.
+            if sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0) {
+                let count = &mut covered[(y * width + x) as usize];
+                *count = count.saturating_add(1);
+            }
+        }
+    }
+    for (pixel, count) in picture.pixels_mut().zip(covered) {
+        if count > 1 && pixel.0[3] > 0 {
+            let [r, g, b, _] = CROSSING.0;
+            for (channel, red) in pixel.0.iter_mut().zip([r, g, b]) {
+                *channel = ((u16::from(*channel) + 3 * u16::from(red)) / 4) as u8;
+            }
+        }
+    }
+}
+
+/// The picture in the colours of its importance; its drawing shows through, so that it is still known.
 fn coloured(picture: &Picture, importance: &[f32], legend: &Legend) -> Picture {
     let mut image = RgbaImage::new(picture.size.x, picture.size.y);
     for (index, (pixel, &value)) in image.pixels_mut().zip(importance).enumerate() {
-        let [r, g, b] = colour(legend, value);
-        pixel.0 = [r, g, b, (picture.pixels.wide(index)[3] >> 8) as u8];
+        let [r, g, b, alpha] = picture.pixels.wide(index).map(|channel| (channel >> 8) as u8);
+        // Luma of Rec. 709.
+        let luma = (0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)) / 255.0;
+        let [r, g, b] = colour(legend, value).map(|c| (f32::from(c) * (0.5 + 0.5 * luma)) as u8);
+        pixel.0 = [r, g, b, alpha];
     }
     Picture { pixels: Pixels::Eight(image), profile: None, ..picture.clone() }
 }
