@@ -29,7 +29,7 @@ pub(super) struct Found {
 
 /// What the four pictures are called, in files and captions.
 pub(super) const NAMES: [(&str, &str); 4] =
-    [("rest", "at rest"), ("importance", "importance"), ("classic", "Eq. 1 alone"), ("ours", "certified")];
+    [("rest", "at rest"), ("importance", "importance"), ("classic", "Eq. 1 alone"), ("ours", "ours")];
 
 /// Asked against achieved: the region that misses its size most.
 pub(super) struct Worst<'a> {

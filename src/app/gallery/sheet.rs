@@ -88,7 +88,7 @@ pub(super) fn contact_sheet(exhibits: &[Exhibit]) -> Result<RgbImage> {
     let mut sheet = Sheet { size, texts: Vec::new(), pictures: Vec::new() };
     let whole = (size[0] - 2 * RIM) as f32;
     sheet.text([RIM as f32, 26.0], Align2::LEFT_TOP, "homunculus: gallery", 32.0, INK, whole);
-    let legend = "at rest · importance · Eq. 1 alone, its crossings red · certified growth";
+    let legend = "at rest · importance · Eq. 1 alone, its crossings red · ours";
     sheet.text([RIM as f32 + whole, 36.0], Align2::RIGHT_TOP, legend, 20.0, QUIET, whole * 0.7);
     for (k, exhibit) in exhibits.iter().enumerate() {
         let (column, row) = (k as u32 % columns, k as u32 / columns);
