@@ -121,9 +121,11 @@ mod window {
         };
         let mut wishes = Vec::new();
         let input = RawInput { screen_rect, events, ..RawInput::default() };
-        let _ = ctx.run_ui(input, |ui| {
+        let mut output = ctx.run_ui(input, |ui| {
             panel::draw(ui, &facts, choice, &mut wishes);
         });
+        // Nobody draws: egui wants to be told that its textures are not wanted.
+        output.textures_delta.clear();
         wishes
     }
 
