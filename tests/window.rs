@@ -310,6 +310,15 @@ fn each_key_does_what_the_help_says() {
 }
 
 #[test]
+fn escape_closes_the_gallery_and_leaves_what_is_open() {
+    let mut stage = Stage::hand();
+    stage.sandbox().choice.gallery = true;
+    stage.press(Key::Escape);
+    let sandbox = stage.sandbox();
+    assert!(!sandbox.choice.gallery && sandbox.open.is_some() && sandbox.snapshot.phase != Phase::Stopped);
+}
+
+#[test]
 fn the_film_plays_and_scrubs() {
     let mut stage = Stage::hand();
     stage.solved();

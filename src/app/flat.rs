@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use glam::DVec2;
+use glam::{DVec2, Vec3A};
 use image::Rgba;
 
 use super::load::LoadedPicture;
@@ -31,7 +31,7 @@ const FRAMES_PER_SECOND: f32 = 15.0;
 const HOLD: f32 = 0.25;
 
 /// Where a picture crosses itself, in every look at it.
-const CROSSING: Rgba<u8> = Rgba([230, 0, 0, 255]);
+pub(super) const CROSSING: Rgba<u8> = Rgba([230, 0, 0, 255]);
 
 /// Warps, writes and says how it went.
 pub(super) fn run(options: &WarpOptions, scene: &Scene, outputs: &Outputs, loaded: LoadedPicture) -> Result<Verdict> {
@@ -39,7 +39,7 @@ pub(super) fn run(options: &WarpOptions, scene: &Scene, outputs: &Outputs, loade
     let watcher = progress::watcher(options.scene.quiet);
     let solved = schedule::solve_domain(Domain::picture(Arc::new(flat), settings.clone()), &watcher);
     watcher.finish();
-    let mut solved = solved?;
+    let solved = solved?;
     if cancel::asked() {
         return Err(Error::Cancelled);
     }
@@ -49,7 +49,7 @@ pub(super) fn run(options: &WarpOptions, scene: &Scene, outputs: &Outputs, loade
     let area_report = AreaReport::of(&areas, &field, &picture.domain, cell);
     let mut report = Report::of(scene, &settings, field.clamped, &solved.outcome, warnings);
     report.take_areas(area_report);
-    let written = write(options, scene, outputs, &picture, &mut solved, &drawn, &report)?;
+    let written = write(options, scene, outputs, &picture, &solved, &drawn, &report)?;
     if !options.scene.quiet {
         say(&warp::summary(&report, &written));
     }
@@ -57,15 +57,15 @@ pub(super) fn run(options: &WarpOptions, scene: &Scene, outputs: &Outputs, loade
 }
 
 /// The mesh a picture is drawn on, and its states, in pixels with y downwards.
-struct Drawn {
-    mesh: FlatMesh,
+pub(super) struct Drawn {
+    pub mesh: FlatMesh,
     /// By rising λ.
     states: Vec<(f32, Vec<DVec2>)>,
-    height: f64,
+    pub height: f64,
 }
 
 impl Drawn {
-    fn new(picture: &Picture, solved: &Solved) -> Self {
+    pub fn new(picture: &Picture, solved: &Solved) -> Self {
         let height = f64::from(picture.size.y);
         let places = |positions: &[glam::DVec3]| positions.iter().map(|p| DVec2::new(p.x, height - p.y)).collect();
         let Boundary { positions, triangles, .. } = &*solved.boundary;
@@ -77,7 +77,7 @@ impl Drawn {
         }
     }
 
-    fn last(&self) -> &[DVec2] {
+    pub fn last(&self) -> &[DVec2] {
         self.states.last().map_or(&self.mesh.rest, |(_, places)| places)
     }
 
@@ -98,7 +98,7 @@ fn write(
     scene: &Scene,
     outputs: &Outputs,
     picture: &Picture,
-    solved: &mut Solved,
+    solved: &Solved,
     drawn: &Drawn,
     report: &Report,
 ) -> Result<Vec<PathBuf>> {
@@ -108,7 +108,8 @@ fn write(
     if let Some(path) = &outputs.mesh {
         let canvas = Canvas::around(picture, &drawn.mesh, [drawn.last()], scale)?;
         let mut pixels = painter.render(drawn.last(), &canvas);
-        let crossings = crossings(solved, drawn.height);
+        let last = solved.film.keyframes().last().map_or(&[][..], |last| &last.positions);
+        let crossings = crossings(solved, last, drawn.height);
         // Thick enough to be seen in a large picture.
         let width = f64::from(canvas.size.max_element()) / 250.0;
         mark(&mut pixels, &canvas, &crossings, width.max(2.0), CROSSING);
@@ -123,15 +124,14 @@ fn write(
     Ok(written)
 }
 
-/// Edges of the outline that cross another one in the last state, in pixels with y downwards.
-fn crossings(solved: &mut Solved, height: f64) -> Vec<(DVec2, DVec2)> {
-    let Some(last) = solved.film.keyframes().last() else { return Vec::new() };
-    let Some(skin) = solved.shells.first_mut() else { return Vec::new() };
+/// Edges of the outline that cross another one in a state of the nodes, in pixels with y downwards.
+pub(super) fn crossings(solved: &Solved, nodes: &[Vec3A], height: f64) -> Vec<(DVec2, DVec2)> {
+    let Some(skin) = solved.shells.first().filter(|_| nodes.len() == solved.complex.nodes()) else { return Vec::new() };
     let place = |node: u32| {
-        let p = solved.complex.grid.source_from_lattice(last.positions[node as usize].as_dvec3());
+        let p = solved.complex.grid.source_from_lattice(nodes[node as usize].as_dvec3());
         DVec2::new(p.x, height - p.y)
     };
-    let edges = skin.crossings(&last.positions).into_iter().flat_map(|(s, t)| [s, t]);
+    let edges = skin.crossings(nodes).into_iter().flat_map(|(s, t)| [s, t]);
     edges
         .map(|face| {
             let [a, b, _] = solved.complex.faces[face as usize];

@@ -69,7 +69,7 @@ fn run(order: Order) -> Result<Verdict> {
     match order {
         Order::Warp(order) => warp::run(*order),
         Order::Inspect(order) => inspect::run(&order),
-        Order::Gallery => gallery::run(),
+        Order::Gallery(options) => gallery::run(&options),
         #[cfg(feature = "record")]
         Order::Record(order) => record::run(*order),
         #[cfg(feature = "window")]

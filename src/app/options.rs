@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
+pub use super::gallery::GalleryOptions;
 #[cfg(feature = "record")]
 use super::record::{RecordOptions, RecordOrder};
 pub use super::scene_options::ReferenceName;
@@ -20,8 +21,8 @@ pub enum Order {
     Warp(Box<WarpOrder>),
     /// Say what is in a file.
     Inspect(InspectOptions),
-    /// List the built-in scenes.
-    Gallery,
+    /// List, render or open the built-in scenes.
+    Gallery(GalleryOptions),
     /// Film the growth.
     #[cfg(feature = "record")]
     Record(Box<RecordOrder>),
@@ -57,8 +58,7 @@ struct CommandLine {
 enum Face {
     Warp(Box<WarpOptions>),
     Inspect(InspectOptions),
-    /// List the built-in scenes: warp, play or record them as gallery:NAME
-    Gallery,
+    Gallery(GalleryOptions),
     #[cfg(feature = "record")]
     Record(Box<RecordOptions>),
     #[cfg(feature = "window")]
@@ -190,7 +190,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Resu
         #[cfg(feature = "window")]
         Some(Face::Play(options)) => Order::Play(options),
         Some(Face::Inspect(options)) => Order::Inspect(options),
-        Some(Face::Gallery) => Order::Gallery,
+        Some(Face::Gallery(options)) => Order::Gallery(options),
         Some(Face::Warp(options)) => {
             let layers = layers_of(&options.scene, &matches)?;
             Order::Warp(Box::new(WarpOrder { options: *options, layers }))

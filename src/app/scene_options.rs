@@ -136,8 +136,7 @@ pub(super) fn fresh(source: &Source) -> Draft {
         draft.fidelity = 1.0;
     }
     if let Source::Gallery(name) = source
-        && let Some(entry) =
-            gallery::list().iter().copied().chain(gallery::picture::list()).find(|entry| entry.name == name)
+        && let Some(entry) = gallery::everything().find(|entry| entry.name == name)
     {
         draft.resolution = entry.resolution;
         draft.fidelity = entry.fidelity;

@@ -9,6 +9,7 @@ pub mod human;
 pub mod implicit;
 pub mod models;
 pub mod picture;
+pub mod thumbnails;
 
 use std::sync::OnceLock;
 
@@ -43,6 +44,9 @@ pub struct Entry {
     pub resolution: u32,
     /// Suggested μ in 0..=1.
     pub fidelity: f32,
+    /// Degrees to the side (0 from the front, 90 from +X) and from above from where it is best seen; a picture is seen
+    /// from the front.
+    pub camera: [f32; 2],
 }
 
 /// A scene ready to be warped.
@@ -54,7 +58,7 @@ pub struct GalleryScene {
     pub importance: Vec<f32>,
 }
 
-/// Everything the gallery has.
+/// The bodies.
 pub fn list() -> &'static [Entry] {
     static LIST: OnceLock<Vec<Entry>> = OnceLock::new();
     LIST.get_or_init(|| {
@@ -64,6 +68,7 @@ pub fn list() -> &'static [Entry] {
             reference: s.reference,
             resolution: 96,
             fidelity: 0.8,
+            camera: [20.0, 8.0],
         });
         let hand = Entry {
             name: "hand",
@@ -71,6 +76,7 @@ pub fn list() -> &'static [Entry] {
             reference: "modelled here",
             resolution: 64,
             fidelity: 0.8,
+            camera: [20.0, 8.0],
         };
         let figures = models::figures().iter().map(|f| Entry {
             name: f.name,
@@ -78,9 +84,15 @@ pub fn list() -> &'static [Entry] {
             reference: f.reference,
             resolution: f.resolution,
             fidelity: f.fidelity,
+            camera: f.camera,
         });
         homunculi.chain([hand]).chain(figures).collect()
     })
+}
+
+/// Bodies, then pictures.
+pub fn everything() -> impl Iterator<Item = Entry> {
+    list().iter().copied().chain(picture::list())
 }
 
 /// Opens a scene by name.

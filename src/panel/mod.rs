@@ -6,6 +6,7 @@
 
 mod export;
 mod film;
+mod gallery;
 mod help;
 mod importance;
 mod player;
@@ -17,6 +18,7 @@ mod top;
 mod view;
 
 pub use export::{ExportChoice, MESH_FORMATS};
+pub use gallery::card_id;
 pub use player::{Easing, Player, Repeat};
 pub use solver::Pending;
 
@@ -114,6 +116,8 @@ pub struct Choice {
     pub player: Player,
     /// Whether the help is shown.
     pub help: bool,
+    /// Whether the gallery is shown, to choose a scene from.
+    pub gallery: bool,
     /// The export dialog, if it is open, and what it is set to.
     pub export: ExportChoice,
     /// Value of the next fill.
@@ -141,6 +145,7 @@ impl Default for Choice {
             wipe: 0.5,
             player: Player::default(),
             help: false,
+            gallery: false,
             export: ExportChoice::default(),
             fill_value: 2.0,
             gradient: [0.5, 2.0],
@@ -249,6 +254,7 @@ pub fn draw(root: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<
     view::legend(root.ctx(), facts, middle);
     top::problem(root.ctx(), facts, middle, wishes);
     export::show(root.ctx(), facts, choice, wishes);
+    gallery::show(root.ctx(), facts.draft.map(|draft| &draft.source), choice, wishes);
     help::show(root.ctx(), choice);
     middle
 }

@@ -46,6 +46,9 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut
             }
         });
         ui.horizontal(|ui| {
+            if ui.button("Gallery…").on_hover_text("All that is built in, as pictures").clicked() {
+                choice.gallery = true;
+            }
             if ui.add_enabled(facts.draft.is_some(), egui::Button::new("Save as…")).clicked() {
                 wishes.push(Wish::Ask(Asked::SaveScene));
             }

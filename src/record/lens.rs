@@ -10,7 +10,7 @@ const ROUNDS: usize = 4;
 
 /// A camera's place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Lens {
+pub(crate) struct Lens {
     /// What it looks at, view space.
     pub target: Vec3,
     /// From there.
@@ -19,7 +19,7 @@ pub(super) struct Lens {
 
 /// How the camera sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sight<'a> {
+pub(crate) struct Sight<'a> {
     /// Directions it looks from during the film, radians; one for a camera that stands still.
     pub yaws: &'a [f32],
     /// Height above the horizon, radians.

@@ -22,6 +22,7 @@ mod stage;
 mod subject;
 mod writer;
 
+pub(crate) use lens::Sight;
 pub use plan::{FramePlan, Mix, plan};
 pub use settings::{Camera, Draft, Ease, MAX_FRAMES, MAX_SIDE, MAX_TITLE, MIN_SIDE, Settings, View};
 pub use sidecar::{Account, FrameAccount, SettingsAccount, sidecar};

@@ -20,6 +20,10 @@ const GAP: f32 = 0.12;
 /// Pixels of a still up to which a software driver draws four for each: it takes seconds, once.
 const FINE_PIXELS: u32 = 3840 * 2160;
 
+/// Pixels of a film up to which four are drawn for each, too: those of a small animation on a web page, whose edges would
+/// show their steps; a software driver draws one or two a second.
+const FINE_FILM_PIXELS: u32 = 512 * 512;
+
 /// What one frame shows was found to be.
 #[derive(Debug, Clone)]
 pub(super) struct Findings {
@@ -108,11 +112,12 @@ impl Stage {
     }
 }
 
-/// Films as fast as the adapter likes; a still may take its time.
+/// Films as fast as the adapter likes; a still may take its time, and a small film takes little.
 fn quality(settings: &Settings, adapter: &Adapter) -> Quality {
     let quality = Quality::for_adapter(adapter);
     let fits = 2 * settings.width.max(settings.height) <= adapter.largest_side;
-    let is_fine = settings.still.is_some() && fits && settings.width * settings.height <= FINE_PIXELS;
+    let most = if settings.still.is_some() { FINE_PIXELS } else { FINE_FILM_PIXELS };
+    let is_fine = fits && settings.width * settings.height <= most;
     if is_fine { Quality { supersampling: 2, ..quality } } else { quality }
 }
 

@@ -71,12 +71,12 @@ impl Subject {
     }
 
     /// What is drawn.
-    pub(super) fn body(&self) -> Body {
+    pub(crate) fn body(&self) -> Body {
         Body { boundary: self.boundary.clone(), complex: self.complex.clone(), binding: self.binding.clone() }
     }
 
     /// `[vertices]` importance.
-    pub(super) fn importance(&self) -> &Arc<Vec<f32>> {
+    pub(crate) fn importance(&self) -> &Arc<Vec<f32>> {
         &self.importance
     }
 
@@ -86,13 +86,13 @@ impl Subject {
     }
 
     /// The certified growth at a mix of keyframes.
-    pub(super) fn pose(&self, mix: Mix) -> Pose {
+    pub(crate) fn pose(&self, mix: Mix) -> Pose {
         let state = |k: usize| self.keyframes[k].1.clone();
         Pose { from: state(mix.from), to: state(mix.to), blend: mix.t }
     }
 
     /// Eq. 1 alone at λ.
-    pub(super) fn classic_pose(&self, lambda: f32) -> Pose {
+    pub(crate) fn classic_pose(&self, lambda: f32) -> Pose {
         Pose { from: self.rest.clone(), to: self.linear.clone(), blend: lambda }
     }
 
@@ -118,7 +118,7 @@ impl Subject {
     }
 
     /// Points of the surface in view space, standing on the floor, over all of the certified growth, and of Eq. 1 alone.
-    pub(super) fn reach(&self) -> [Vec<Vec3>; 2] {
+    pub(crate) fn reach(&self) -> [Vec<Vec3>; 2] {
         let points = |state: &State| self.surface(state);
         let certified = self.keyframes.iter().flat_map(|(_, state, _)| points(state)).collect();
         let classic = points(&self.rest).into_iter().chain(points(&self.linear)).collect();

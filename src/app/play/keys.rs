@@ -86,8 +86,9 @@ fn named_key(sandbox: &mut Sandbox, key: &Key) {
 /// Drops what is nearest at hand: the stroke, a dialog, the solve.
 fn escape(sandbox: &mut Sandbox) {
     if sandbox.open.as_mut().is_some_and(|open| open.painting.cancel()) {
-    } else if sandbox.choice.help || sandbox.choice.export.is_open {
+    } else if sandbox.choice.help || sandbox.choice.export.is_open || sandbox.choice.gallery {
         sandbox.choice.help = false;
+        sandbox.choice.gallery = false;
         sandbox.choice.export.is_open = false;
     } else if sandbox.problem.is_some() {
         sandbox.problem = None;

@@ -75,6 +75,15 @@ fn update(mut sandbox: ResMut<Sandbox>, time: Res<Time>) {
 
 /// Opens the window and stays until it is closed.
 pub(super) fn run(options: &PlayOptions) -> Result<Verdict> {
+    start(options, false)
+}
+
+/// The same with nothing open but the gallery, to choose from.
+pub(super) fn choose() -> Result<Verdict> {
+    start(&PlayOptions::default(), true)
+}
+
+fn start(options: &PlayOptions, gallery: bool) -> Result<Verdict> {
     let started = Instant::now();
     let adapter = view::adapter()?;
     display::check()?;
@@ -83,7 +92,10 @@ pub(super) fn run(options: &PlayOptions) -> Result<Verdict> {
     if measured.is_some() || options.script.is_some() {
         sandbox.memory.forget();
     }
-    sandbox.wishes.push(first(options.source.clone()));
+    sandbox.choice.gallery = gallery;
+    if !gallery {
+        sandbox.wishes.push(first(options.source.clone()));
+    }
     let script = options.script.as_deref().map(script::Script::read).transpose()?;
     let size = match options.size[..] {
         [width, height] => [width, height],

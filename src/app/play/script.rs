@@ -8,7 +8,7 @@
 //! wheel 2                   clicks away from the user
 //! key z ctrl shift          `z`, `[`, `space`, `left`, `escape`, `f12`, …
 //! open body.obj             as if dropped; `save s.ron`, `mesh out.glb`, `growth out.glb`, `report out.json`
-//! mode fidelity             `plain`, `importance`, `voxels`; `show ghost|sizes|beside|wipe|help|export` toggles
+//! mode fidelity             `plain`, `importance`, `voxels`; `show ghost|sizes|beside|wipe|help|gallery|export` toggles
 //! shot a.png                a picture of the window
 //! expect problem TEXT       or `expect strokes 2`, `expect lambda 0.5`, `expect calm`; the program ends with an error if not
 //! resize 1920 1080
@@ -259,10 +259,11 @@ impl Stage<'_> {
             "ghost" => choice.ghost = !choice.ghost,
             "sizes" => choice.size_legend = !choice.size_legend,
             "help" => choice.help = !choice.help,
+            "gallery" => choice.gallery = !choice.gallery,
             "export" => choice.export.is_open = !choice.export.is_open,
             "beside" => choice.compare = toggled(choice.compare, Compare::SideBySide),
             "wipe" => choice.compare = toggled(choice.compare, Compare::Wipe),
-            _ => return Err("show ghost, sizes, help, export, beside or wipe".into()),
+            _ => return Err("show ghost, sizes, help, gallery, export, beside or wipe".into()),
         }
         Ok(())
     }

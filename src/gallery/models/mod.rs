@@ -33,6 +33,8 @@ pub struct Figure {
     pub resolution: u32,
     /// μ at which it is shown.
     pub fidelity: f32,
+    /// Degrees to the side and from above from where it is best seen.
+    pub camera: [f32; 2],
     /// Cells of the first net when it is baked, metres: smaller than half of its narrowest gap.
     pub cell: f32,
     /// Builds the implicit shape.
@@ -44,13 +46,14 @@ pub struct Figure {
 
 /// A scene with its files, which carry its name.
 macro_rules! figure {
-    ($module:ident, $one_line:expr, $reference:expr, $resolution:expr, $fidelity:expr, $cell:expr) => {
+    ($module:ident, $one_line:expr, $reference:expr, $resolution:expr, $fidelity:expr, $camera:expr, $cell:expr) => {
         Figure {
             name: stringify!($module),
             one_line: $one_line,
             reference: $reference,
             resolution: $resolution,
             fidelity: $fidelity,
+            camera: $camera,
             cell: $cell,
             solid: $module::solid,
             table: include_str!(concat!("../../../assets/gallery/models/", stringify!($module), ".csv")),
@@ -66,6 +69,7 @@ static FIGURES: [Figure; 9] = [
         "ranking after Matthews 2002 and DLR; sizes estimated",
         96,
         0.8,
+        [38.0, 14.0],
         0.008
     ),
     figure!(
@@ -74,6 +78,7 @@ static FIGURES: [Figure; 9] = [
         "Martin and Vigne 2014; TRAFFIC",
         96,
         0.8,
+        [52.0, 10.0],
         0.011
     ),
     figure!(
@@ -82,6 +87,7 @@ static FIGURES: [Figure; 9] = [
         "the idea after Wang, Lee and Tai 2008",
         96,
         0.8,
+        [14.0, 6.0],
         0.010
     ),
     figure!(
@@ -90,6 +96,7 @@ static FIGURES: [Figure; 9] = [
         "estimated temperatures",
         96,
         0.8,
+        [20.0, 8.0],
         0.009
     ),
     figure!(
@@ -98,15 +105,17 @@ static FIGURES: [Figure; 9] = [
         "Asimov 1 documentation; arms estimated",
         96,
         0.8,
+        [20.0, 8.0],
         0.008
     ),
-    figure!(comic, "a comic character exaggerated: eyes, hands, feet", "a choice", 96, 0.8, 0.008),
+    figure!(comic, "a comic character exaggerated: eyes, hands, feet", "a choice", 96, 0.8, [16.0, 6.0], 0.008),
     figure!(
         bike,
         "a bicycle, large where it touches its rider: saddle, grips, pedals",
         "estimated contact",
         128,
         0.8,
+        [24.0, 10.0],
         0.0065
     ),
     figure!(
@@ -115,9 +124,18 @@ static FIGURES: [Figure; 9] = [
         "ranking after Muracki et al. 2021 and Br J Sports Med 45(4):331",
         128,
         0.8,
+        [10.0, 8.0],
         0.0075
     ),
-    figure!(flowers, "lilies in a vase, large where the pollen is: anthers", "schematic", 128, 0.8, 0.0065),
+    figure!(
+        flowers,
+        "lilies in a vase, large where the pollen is: anthers",
+        "schematic",
+        128,
+        0.8,
+        [20.0, 12.0],
+        0.0065
+    ),
 ];
 
 /// All of them.

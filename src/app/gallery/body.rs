@@ -1,0 +1,111 @@
+//! The four pictures of a body.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+use std::time::Instant;
+
+use bevy::math::{IVec3, Vec3};
+use bevy::prelude::{Entity, World};
+use image::{DynamicImage, RgbImage};
+
+use super::exhibit::{Found, SIDE};
+use crate::app::{load, progress, scene_options};
+use crate::export::report::Report;
+use crate::gallery::Entry;
+use crate::record::{Mix, Sight, Subject};
+use crate::scene::{Scene, Source};
+use crate::schedule::{self, Settings, Solved};
+use crate::view::headless::{Renderer, Shown};
+use crate::view::{self, FIELD_OF_VIEW, Looks, Mode, Orbit, Pose, Quality};
+use crate::{Error, Result};
+
+/// Draws bodies, one after the other.
+pub(super) struct Photographer {
+    renderer: Renderer,
+}
+
+impl Photographer {
+    /// Sets the studio up.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn new() -> Result<Self> {
+        let quality = Quality { supersampling: 2, ..Quality::for_adapter(&view::adapter()?) };
+        Renderer::new([SIDE; 2], quality).map(|renderer| Self { renderer })
+    }
+
+    /// Warps a scene and takes its pictures.
+    ///
+    /// # Errors
+    /// What the engine or the driver refuses.
+    pub fn exhibit(&mut self, entry: &Entry) -> Result<Found> {
+        let scene = Scene::new(scene_options::fresh(&Source::Gallery(entry.name.into())))?;
+        let (boundary, stack) = load::prepare(&scene, load::open(&scene.source)?)?;
+        let settings =
+            Settings { resolution: scene.resolution, fidelity: scene.fidelity, keys: scene.keys, reference: None };
+        let start = Instant::now();
+        let solved = schedule::solve(&boundary, &stack, &settings, &progress::watcher(true))?;
+        let seconds = start.elapsed().as_secs_f64();
+        let marked = Arc::new(crossing_triangles(&solved));
+        let (subject, outcome) = Subject::new(Arc::new(boundary), solved);
+        let report = Report::of(&scene, &settings, stack.clamped(), &outcome, Vec::new());
+
+        let looks =
+            Looks { mode: Mode::Importance, importance: Some(subject.importance().clone()), ..Looks::default() };
+        let legend = looks.legend();
+        let last = subject.lambdas().len().saturating_sub(1);
+        let at = |key: usize| subject.pose(Mix { from: key, to: key, t: 0.0 });
+        let faults = Looks { marked: Some(marked), ..Looks::default() };
+        let views =
+            [(Looks::default(), at(0)), (looks.clone(), at(0)), (faults, subject.classic_pose(1.0)), (looks, at(last))];
+        let orbit = stand(&subject, entry);
+        let body = self.renderer.show(Shown::new(subject.body()));
+        let mut pictures = Vec::with_capacity(views.len());
+        for (looks, pose) in views {
+            pictures.push(self.picture(body, looks, pose, orbit));
+        }
+        self.renderer.world_mut().despawn(body);
+        let pictures: Vec<RgbImage> = pictures.into_iter().collect::<Result<_>>()?;
+        let pictures = pictures.try_into().map_err(|_| Error::Fault("a scene has four pictures".into()))?;
+        Ok(Found { pictures, legend, report, seconds })
+    }
+
+    fn picture(&mut self, body: Entity, looks: Looks, pose: Pose, orbit: Orbit) -> Result<RgbImage> {
+        let world: &mut World = self.renderer.world_mut();
+        world.entity_mut(body).insert((looks, pose));
+        if let Some(mut camera) = self.renderer.orbit() {
+            *camera = orbit;
+        }
+        self.renderer.frame().map(|picture| DynamicImage::from(picture).into_rgb8())
+    }
+}
+
+/// Where the camera stands so that the scene is seen from where it is best seen, in all states.
+fn stand(subject: &Subject, entry: &Entry) -> Orbit {
+    let [yaw, pitch] = entry.camera.map(f32::to_radians);
+    let [certified, classic] = subject.reach();
+    let points: Vec<Vec3> = certified.into_iter().chain(classic).collect();
+    let lens = Sight { yaws: &[yaw], pitch, opening: FIELD_OF_VIEW, aspect: 1.0 }.fit(&points);
+    Orbit { target: lens.target, distance: lens.distance, yaw, pitch, ..Orbit::default() }
+}
+
+/// Triangles of the surface that Eq. 1 alone makes cross, and those in the cells around: a crossing alone is a line too
+/// thin to be seen.
+fn crossing_triangles(solved: &Solved) -> Vec<u32> {
+    let Solved { boundary, complex, shells, linear, .. } = solved;
+    let cell_of = |p| complex.grid.lattice_from_source(p).floor().as_ivec3();
+    let corners = |t: u32| boundary.triangles[t as usize].map(|v| cell_of(boundary.positions[v as usize]));
+    let mut cells: HashSet<IVec3> = HashSet::new();
+    for (index, shell) in shells.iter().enumerate() {
+        for face in shell.crossings(linear).into_iter().flat_map(|(a, b)| [a, b]) {
+            // The first shell is the complex's own skin.
+            if index == 0 {
+                cells.insert(complex.cells[complex.cell_of_face[face as usize] as usize]);
+            } else {
+                cells.extend(corners(face));
+            }
+        }
+    }
+    let is_near = |t: &u32| corners(*t).iter().any(|cell| cells.contains(cell));
+    (0..boundary.triangles.len() as u32).filter(is_near).collect()
+}
