@@ -227,6 +227,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
 #ifdef UNLIT
     var lit = colour.rgb;
     lit = mix(lit, shown.dab_colour.rgb, 0.75 * brush.y);
+#ifdef HAS_FIELD
+    lit = mix(lit, vec3(0.73, 0.015, 0.012), smoothstep(0.95, 0.999, in.field.y));
+#endif
     lit = mix(lit, shown.ring_colour.rgb, brush.x);
     return vec4(lit, colour.a * shown.opacity);
 #else

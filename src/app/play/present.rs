@@ -8,10 +8,11 @@ use glam::Vec3A;
 
 use super::pointer::Viewport;
 use super::sandbox::{Look, Sandbox};
-use crate::panel::Compare;
+use crate::boundary::Boundary;
+use crate::panel::{Choice, Compare};
 use crate::session::{Phase, Snapshot};
 use crate::view::{
-    Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe,
+    Body, Extent, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe,
 };
 
 /// The certified body.
@@ -53,7 +54,8 @@ pub(super) fn bodies(
     if is_new {
         shown.iter().for_each(|(entity, _)| commands.entity(entity).despawn());
         let rest = Arc::new(lattice.complex.rest.clone());
-        commands.spawn((Shown, body(), Picker::default(), Rest(rest)));
+        let picker = sandbox.open.as_ref().map_or_else(Picker::default, |open| open.picker(&lattice.boundary));
+        commands.spawn((Shown, body(), picker, Rest(rest)));
     }
     let compares = sandbox.choice.compare != Compare::Off;
     if is_new || !compares {
@@ -68,14 +70,18 @@ pub(super) fn bodies(
         references.iter().for_each(|entity| commands.entity(entity).despawn());
     }
     if shows_sizes && (is_new || references.is_empty()) {
-        let (low, high) = lattice.boundary.bounds().unwrap_or_default();
-        let frame = ViewFrame::of(&lattice.boundary);
-        let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
-        // Beside the feet, before them: there they hide nothing.
-        let row = REFERENCE * (SizeLegend::FACTORS.iter().sum::<f32>() + 3.0);
-        let at = Vec3::new(0.5 * (low.x + high.x) + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1);
-        commands.spawn(SizeLegend { unit: REFERENCE, is_flat: high.z <= low.z, at });
+        commands.spawn(references_of(&lattice.boundary));
     }
+}
+
+/// Beside the feet and before them, where they hide nothing.
+fn references_of(boundary: &Boundary) -> SizeLegend {
+    let (low, high) = boundary.bounds().unwrap_or_default();
+    let frame = ViewFrame::of(boundary);
+    let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
+    let row = REFERENCE * (SizeLegend::FACTORS.iter().sum::<f32>() + 3.0);
+    let at = Vec3::new(0.5 * (low.x + high.x) + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1);
+    SizeLegend { unit: REFERENCE, is_flat: high.z <= low.z, at }
 }
 
 type Posed<'a> = (Entity, Option<&'a Pose>, &'a Rest, &'a mut Placement);
@@ -162,6 +168,7 @@ pub(super) fn looks(
     let importance = painted.as_ref().filter(|_| fits).map(|(_, values)| values.clone());
     let choice = &sandbox.choice;
     let lambda = choice.player.lambda();
+    let marked = (choice.compare != Compare::Off).then(|| sandbox.marked()).flatten();
     for (entity, mut looks, has_ghost, is_classic) in &mut shown {
         let voxels = match (choice.mode, &snapshot.importance) {
             (Mode::Voxels(VoxelColour::Growth), Some(importance)) if lambda < 1.0 => {
@@ -172,12 +179,17 @@ pub(super) fn looks(
         };
         let wiped = choice.compare == Compare::Wipe;
         let wanted = Looks {
-            mode: if choice.mode == Mode::Fidelity && snapshot.reached.is_none() { Mode::Plain } else { choice.mode },
+            mode: match choice.mode {
+                Mode::Fidelity if snapshot.reached.is_none() => Mode::Plain,
+                // In grey, on which red tells.
+                Mode::Importance | Mode::Fidelity if is_classic => Mode::Plain,
+                mode => mode,
+            },
             importance: importance.clone(),
             fidelity: snapshot.reached.clone(),
             voxels,
             range: None,
-            marked: None,
+            marked: marked.clone().filter(|_| is_classic),
             wipe: wiped.then_some(Wipe { at: choice.wipe, keeps_left: is_classic }),
         };
         if !same_looks(&looks, &wanted) {
@@ -201,7 +213,12 @@ fn same_looks(a: &Looks, b: &Looks) -> bool {
         (None, None) => true,
         _ => false,
     };
-    a.mode == b.mode
+    let same_marks = match (&a.marked, &b.marked) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    same_marks
+        && a.mode == b.mode
         && a.wipe == b.wipe
         && same(&a.importance, &b.importance)
         && same(&a.fidelity, &b.fidelity)
@@ -234,8 +251,8 @@ pub(super) fn camera(
             match look {
                 Look::From(axis) => wanted.look_from(axis),
                 Look::Frame => {
-                    let [low, high] = bounds(&sandbox.snapshot, sandbox.choice.compare == Compare::SideBySide);
-                    wanted.frame(crate::view::Extent { low, high }, viewport.size.x / viewport.size.y.max(1.0));
+                    let extent = bounds(&sandbox.snapshot, &sandbox.choice);
+                    wanted.frame(extent, viewport.size.x / viewport.size.y.max(1.0));
                     // Room for the legend and for what the eye wants around a thing.
                     wanted.distance *= 1.12;
                     *framed = (sandbox.snapshot.phase != Phase::Done).then_some((wanted.target, wanted.distance));
@@ -254,8 +271,8 @@ pub(super) fn camera(
 }
 
 /// The box around what is shown, view space.
-fn bounds(snapshot: &Snapshot, beside: bool) -> [Vec3; 2] {
-    let Some(lattice) = &snapshot.lattice else { return [Vec3::ZERO, Vec3::ONE] };
+fn bounds(snapshot: &Snapshot, choice: &Choice) -> Extent {
+    let Some(lattice) = &snapshot.lattice else { return Extent { low: Vec3::ZERO, high: Vec3::ONE } };
     let frame = ViewFrame::of(&lattice.boundary);
     let (mut low, mut high) = lattice.boundary.bounds().unwrap_or_default();
     let is_flat = high.z <= low.z;
@@ -272,9 +289,10 @@ fn bounds(snapshot: &Snapshot, beside: bool) -> [Vec3; 2] {
         // What has grown downwards is lifted onto the floor.
         (low.y, high.y) = (0.0, high.y - low.y);
     }
-    if beside {
+    if choice.compare == Compare::SideBySide {
         let offset = 0.62 * width(snapshot);
         (low.x, high.x) = (low.x - offset, high.x + offset);
     }
-    [low, high]
+    let extent = Extent { low, high };
+    if choice.size_legend { extent.union(references_of(&lattice.boundary).extent()) } else { extent }
 }
