@@ -252,7 +252,12 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
     let facing = dot(normal, studio::to_key());
     var shadow = 0.0;
     if facing > 0.0 {
+#ifdef WIPED
+        // The body on the other side is not seen here; its shadow would be.
+        shadow = 1.0;
+#else
         shadow = studio::key_shadow(in.world, normal, 0.02, 0.01);
+#endif
     }
 #ifdef MAPPED
     // The colour is the legend's where the light is full, and never brighter.

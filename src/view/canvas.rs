@@ -300,6 +300,12 @@ impl Canvas {
             let is_shown = is_blocks == has_blocks;
             for part in &layer.parts {
                 commands.entity(part.entity).insert(if is_shown { Visibility::Inherited } else { Visibility::Hidden });
+                // Of two bodies in one place one casts the shadow on the floor.
+                if looks.wipe.is_some_and(|wipe| wipe.keeps_left) {
+                    commands.entity(part.entity).insert(NotShadowCaster);
+                } else {
+                    commands.entity(part.entity).remove::<NotShadowCaster>();
+                }
                 let Some(mut material) = easel.materials.get_mut(&part.material).filter(|_| is_shown) else { continue };
                 material.variant = Variant {
                     coat: if mapped.is_some() { Coat::Mapped } else { Coat::Own },

@@ -56,7 +56,13 @@ fn present(
     }
 }
 
+/// Between neighbours, in widths of ×1: room for their names.
+const GAP: f32 = 1.7;
+
 impl SizeLegend {
+    /// Width of the row, in widths of ×1.
+    pub const WIDTH: f32 = Self::FACTORS[0] + Self::FACTORS[1] + Self::FACTORS[2] + Self::FACTORS[3] + 3.0 * GAP;
+
     /// The size factors, in order from left to right.
     pub const FACTORS: [f32; 4] = [0.5, 1.0, 2.0, 4.0];
 
@@ -72,7 +78,7 @@ impl SizeLegend {
     /// The box around the row, view space.
     pub fn extent(&self) -> Extent {
         let half = 0.5 * Self::FACTORS[3] * self.unit;
-        let width = 0.5 * self.unit * (Self::FACTORS.iter().sum::<f32>() + 3.0);
+        let width = 0.5 * self.unit * Self::WIDTH;
         let below = if self.is_flat { half } else { 0.0 };
         let depth = if self.is_flat { 0.0 } else { half };
         Extent {
@@ -83,11 +89,10 @@ impl SizeLegend {
 
     /// The foot of each shape, view space.
     pub fn centres(&self) -> [Vec3; 4] {
-        // A gap of the width of ×1 between neighbours.
-        let mut x = -0.5 * self.unit * (Self::FACTORS.iter().sum::<f32>() + 3.0);
+        let mut x = -0.5 * self.unit * Self::WIDTH;
         Self::FACTORS.map(|factor| {
             let centre = x + 0.5 * factor * self.unit;
-            x += (factor + 1.0) * self.unit;
+            x += (factor + GAP) * self.unit;
             self.at + Vec3::X * centre
         })
     }

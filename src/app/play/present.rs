@@ -79,7 +79,7 @@ fn references_of(boundary: &Boundary) -> SizeLegend {
     let (low, high) = boundary.bounds().unwrap_or_default();
     let frame = ViewFrame::of(boundary);
     let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
-    let row = REFERENCE * (SizeLegend::FACTORS.iter().sum::<f32>() + 3.0);
+    let row = REFERENCE * SizeLegend::WIDTH;
     let at = Vec3::new(0.5 * (low.x + high.x) + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1);
     SizeLegend { unit: REFERENCE, is_flat: high.z <= low.z, at }
 }
@@ -92,16 +92,25 @@ pub(super) fn poses(
     sandbox: Res<Sandbox>,
     mut shown: Query<Posed, (With<Shown>, Without<Classic>)>,
     mut classic: Query<Posed, (With<Classic>, Without<Shown>)>,
+    orbits: Query<&Orbit>,
+    mut reached: Local<Option<(u64, Extent)>>,
 ) {
     let snapshot = &sandbox.snapshot;
-    let beside = sandbox.choice.compare == Compare::SideBySide;
-    let offset = if beside { 0.62 * width(snapshot) } else { 0.0 };
+    let mut offset = Vec3::ZERO;
+    if sandbox.choice.compare == Compare::SideBySide
+        && let Some(orbit) = orbits.iter().next()
+    {
+        if reached.is_none_or(|(version, _)| version != snapshot.version) {
+            *reached = Some((snapshot.version, reach(snapshot, true)));
+        }
+        offset = reached.map_or(Vec3::ZERO, |(_, extent)| aside(extent, orbit));
+    }
     for (entity, pose, _, mut placement) in &mut shown {
-        placement.set_if_neq(Placement { offset: Vec3::X * offset });
+        placement.set_if_neq(Placement { offset });
         set(&mut commands, entity, pose, certified_pose(&sandbox));
     }
     for (entity, pose, rest, mut placement) in &mut classic {
-        placement.set_if_neq(Placement { offset: Vec3::NEG_X * offset });
+        placement.set_if_neq(Placement { offset: -offset });
         let linear = snapshot.linear.as_ref().filter(|linear| linear.len() == rest.0.len());
         let wanted = linear.map(|linear| Pose {
             from: rest.0.clone(),
@@ -112,11 +121,13 @@ pub(super) fn poses(
     }
 }
 
-/// How wide the boundary is, view units.
-fn width(snapshot: &Snapshot) -> f32 {
-    let Some(lattice) = &snapshot.lattice else { return 1.0 };
-    let (low, high) = lattice.boundary.bounds().unwrap_or_default();
-    ViewFrame::of(&lattice.boundary).world_length((high.x - low.x).max(0.5 * (high.y - low.y)))
+/// Space between two bodies side by side, as a part of their width.
+const GAP: f32 = 0.06;
+
+/// From the middle to the right one of two bodies side by side, as the camera sees them.
+fn aside(Extent { low, high }: Extent, orbit: &Orbit) -> Vec3 {
+    let right = orbit.rotation() * Vec3::X;
+    right * 0.5 * (1.0 + GAP) * (high - low).dot(right.abs())
 }
 
 fn set(commands: &mut Commands, entity: Entity, now: Option<&Pose>, wanted: Option<Pose>) {
@@ -251,7 +262,7 @@ pub(super) fn camera(
             match look {
                 Look::From(axis) => wanted.look_from(axis),
                 Look::Frame => {
-                    let extent = bounds(&sandbox.snapshot, &sandbox.choice);
+                    let extent = bounds(&sandbox.snapshot, &sandbox.choice, &wanted);
                     wanted.frame(extent, viewport.size.x / viewport.size.y.max(1.0));
                     // Room for the legend and for what the eye wants around a thing.
                     wanted.distance *= 1.12;
@@ -271,16 +282,28 @@ pub(super) fn camera(
 }
 
 /// The box around what is shown, view space.
-fn bounds(snapshot: &Snapshot, choice: &Choice) -> Extent {
+fn bounds(snapshot: &Snapshot, choice: &Choice, orbit: &Orbit) -> Extent {
+    let is_beside = choice.compare == Compare::SideBySide;
+    let one = reach(snapshot, is_beside);
+    let aside = if is_beside { aside(one, orbit) } else { Vec3::ZERO };
+    let all = one.moved(aside).union(one.moved(-aside));
+    match &snapshot.lattice {
+        Some(lattice) if choice.size_legend => all.union(references_of(&lattice.boundary).extent()),
+        _ => all,
+    }
+}
+
+/// The box around the body at rest and grown, with Eq. 1's solution if that is shown too; view space.
+fn reach(snapshot: &Snapshot, with_linear: bool) -> Extent {
     let Some(lattice) = &snapshot.lattice else { return Extent { low: Vec3::ZERO, high: Vec3::ONE } };
     let frame = ViewFrame::of(&lattice.boundary);
     let (mut low, mut high) = lattice.boundary.bounds().unwrap_or_default();
     let is_flat = high.z <= low.z;
-    let last = snapshot.film.last().map(|state| &state.positions).or(snapshot.linear.as_ref());
-    if let Some(state) = last.filter(|state| state.len() == lattice.complex.nodes()) {
-        let h = lattice.complex.grid;
+    let last = snapshot.film.last().map(|state| &state.positions);
+    let linear = snapshot.linear.as_ref().filter(|_| with_linear || last.is_none());
+    for state in last.into_iter().chain(linear).filter(|state| state.len() == lattice.complex.nodes()) {
         for p in state.iter() {
-            let p = h.source_from_lattice(p.as_dvec3());
+            let p = lattice.complex.grid.source_from_lattice(p.as_dvec3());
             (low, high) = (low.min(p), high.max(p));
         }
     }
@@ -289,10 +312,5 @@ fn bounds(snapshot: &Snapshot, choice: &Choice) -> Extent {
         // What has grown downwards is lifted onto the floor.
         (low.y, high.y) = (0.0, high.y - low.y);
     }
-    if choice.compare == Compare::SideBySide {
-        let offset = 0.62 * width(snapshot);
-        (low.x, high.x) = (low.x - offset, high.x + offset);
-    }
-    let extent = Extent { low, high };
-    if choice.size_legend { extent.union(references_of(&lattice.boundary).extent()) } else { extent }
+    Extent { low, high }
 }

@@ -24,7 +24,7 @@ use bevy::input::ButtonState;
 use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::input::mouse::{MouseButtonInput, MouseScrollUnit, MouseWheel};
 use bevy::prelude::*;
-use bevy::window::{CursorMoved, PrimaryWindow};
+use bevy::window::{CursorMoved, PrimaryWindow, WindowEvent};
 
 use super::sandbox::Sandbox;
 use crate::app::note;
@@ -115,6 +115,12 @@ impl Stage<'_> {
         self.world.resource_mut::<Sandbox>()
     }
 
+    /// As the window would: once by its kind, for the view, and once among all its events, for the panels.
+    fn send<M: Message + Clone + Into<WindowEvent>>(&mut self, message: M) {
+        self.world.write_message(message.clone());
+        self.world.write_message(message.into());
+    }
+
     fn perform(&mut self, script: &mut Script, line: &str) -> Result<Next, String> {
         let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
         let words: Vec<&str> = rest.split_whitespace().collect();
@@ -179,7 +185,7 @@ impl Stage<'_> {
 
     fn move_to(&mut self, script: &mut Script, position: Vec2) {
         script.pointer = position;
-        self.world.write_message(CursorMoved { window: self.window, position, delta: None });
+        self.send(CursorMoved { window: self.window, position, delta: None });
     }
 
     fn button(&mut self, pressed: bool, name: Option<&str>) {
@@ -189,7 +195,7 @@ impl Stage<'_> {
             _ => MouseButton::Left,
         };
         let state = if pressed { ButtonState::Pressed } else { ButtonState::Released };
-        self.world.write_message(MouseButtonInput { button, state, window: self.window });
+        self.send(MouseButtonInput { button, state, window: self.window });
     }
 
     /// Becomes moves with a press before and a release after, two frames each: panels need one to see the pointer come.
@@ -212,7 +218,7 @@ impl Stage<'_> {
     }
 
     fn wheel(&mut self, y: f32) {
-        self.world.write_message(MouseWheel {
+        self.send(MouseWheel {
             unit: MouseScrollUnit::Line,
             x: 0.0,
             y,
@@ -250,7 +256,7 @@ impl Stage<'_> {
     }
 
     fn write_key(&mut self, key_code: KeyCode, key: &Key, state: ButtonState) {
-        self.world.write_message(KeyboardInput {
+        self.send(KeyboardInput {
             key_code,
             logical_key: key.clone(),
             state,
