@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use bevy::prelude::*;
 use homunculus::app::play::{Classic, Shown, Viewport};
+use homunculus::paint::{Edit, Fill};
 use homunculus::panel::Compare;
 use homunculus::view::{Body, Looks, Mode, Placement, SizeLegend, Wipe};
 
@@ -82,7 +83,9 @@ fn what_crosses_in_the_classic_solution_is_marked_and_only_there() {
 
 #[test]
 fn sabotage_without_importance_nothing_is_marked() {
-    let mut stage = Stage::of(|draft| draft.layers.clear());
+    // Over the hand's own importance.
+    let even = Edit::Fill(Fill::All { value: 1.0 });
+    let mut stage = Stage::of(|draft| draft.strokes = vec![even]);
     stage.solved();
     assert_eq!(stage.sandbox().snapshot.outcome.as_ref().unwrap().classic.unwrap().crossings, 0);
     compare(&mut stage, Compare::SideBySide);

@@ -31,8 +31,8 @@ fn cursor(stage: &mut Stage) -> Option<Cursor> {
 /// The hand at half its size, solved: its ghost stands out all around it.
 fn shrunk() -> Stage {
     let mut stage = Stage::of(|draft| {
-        draft.layers.clear();
-        (draft.base, draft.fidelity) = (0.5, 1.0);
+        draft.strokes = vec![Edit::Fill(Fill::All { value: 0.5 })];
+        draft.fidelity = 1.0;
     });
     stage.solved();
     stage.key("b");
@@ -63,10 +63,10 @@ fn the_ghost_can_be_painted_where_the_surface_has_gone() {
     let place = beside_the_surface(&mut stage);
     stage.sandbox().choice.ghost = false;
     click(&mut stage, place);
-    assert!(edits(&mut stage).is_empty(), "without the ghost there is nothing there");
+    assert_eq!(edits(&mut stage).len(), 1, "without the ghost there is nothing there");
     stage.sandbox().choice.ghost = true;
     click(&mut stage, place);
-    let [Edit::Stroke { dabs, .. }] = &edits(&mut stage)[..] else { panic!("one stroke") };
+    let [_, Edit::Stroke { dabs, .. }] = &edits(&mut stage)[..] else { panic!("one stroke over the fill") };
     // The dab is on the rest shape, where the ghost was touched.
     let sandbox = stage.sandbox();
     let boundary = &sandbox.open.as_ref().unwrap().painting.under().boundary;

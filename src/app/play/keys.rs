@@ -55,7 +55,8 @@ fn character_key(sandbox: &mut Sandbox, character: &str, control: bool, shift: b
         ("s", true) => sandbox.wishes.push(if shift { Wish::Ask(Asked::SaveScene) } else { Wish::Save }),
         #[cfg(feature = "record")]
         ("r", true) => {
-            crate::panel::open_record(choice, &sandbox.open.as_ref().map_or_else(String::new, |open| open.title()))
+            let title = sandbox.open.as_ref().map_or_else(String::new, |open| open.title());
+            crate::panel::open_record(choice, &title);
         }
         ("o", true) => sandbox.wishes.push(Wish::Ask(Asked::Open)),
         ("f", false) => sandbox.wishes.push(Wish::Frame),
@@ -89,9 +90,10 @@ fn named_key(sandbox: &mut Sandbox, key: &Key) {
 
 /// Drops what is nearest at hand: the stroke, a dialog, the solve.
 fn escape(sandbox: &mut Sandbox) {
-    if sandbox.open.as_mut().is_some_and(|open| open.painting.cancel()) {
-    } else if close_dialogs(&mut sandbox.choice) {
-    } else if sandbox.problem.is_some() {
+    if sandbox.open.as_mut().is_some_and(|open| open.painting.cancel()) || close_dialogs(&mut sandbox.choice) {
+        return;
+    }
+    if sandbox.problem.is_some() {
         sandbox.problem = None;
     } else {
         sandbox.wishes.push(Wish::Cancel);
