@@ -227,6 +227,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
 #ifdef UNLIT
     var lit = colour.rgb;
     lit = mix(lit, shown.dab_colour.rgb, 0.75 * brush.y);
+#ifdef HAS_FIELD
+    lit = mix(lit, vec3(0.73, 0.015, 0.012), smoothstep(0.95, 0.999, in.field.y));
+#endif
     lit = mix(lit, shown.ring_colour.rgb, brush.x);
     return vec4(lit, colour.a * shown.opacity);
 #else
@@ -249,7 +252,12 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
     let facing = dot(normal, studio::to_key());
     var shadow = 0.0;
     if facing > 0.0 {
+#ifdef WIPED
+        // The body on the other side is not seen here; its shadow would be.
+        shadow = 1.0;
+#else
         shadow = studio::key_shadow(in.world, normal, 0.02, 0.01);
+#endif
     }
 #ifdef MAPPED
     // The colour is the legend's where the light is full, and never brighter.

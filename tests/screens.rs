@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
 use image::imageops::FilterType;
-use image::{DynamicImage, RgbImage};
+use image::{AnimationDecoder, DynamicImage, RgbImage};
 
 /// A display of its own.
 struct Display {
@@ -104,6 +104,41 @@ expect lambda 0.5
 shot half.png
 frames 4
 lambda 1
+show beside
+frames 2
+wait done
+key f
+frames 4
+shot beside.png
+frames 4
+show wipe
+key f
+frames 3
+drag 640 500 560 500 4 left
+frames 3
+expect wipe 0.385
+shot wipe.png
+frames 4
+show wipe
+show sizes
+key f
+frames 4
+shot sizes.png
+frames 4
+show sizes
+key f
+show record
+frames 4
+shot record.png
+frames 3
+film film.apng 96 64 0.5 8
+wait preview
+frames 2
+shot filming.png
+wait film
+expect calm
+show record
+frames 3
 key space
 frames 4
 key space
@@ -172,9 +207,12 @@ fn the_window_opens_paints_plays_refuses_and_saves() {
     let saved = homunculus::scene::Scene::load(&folder.path().join("saved.ron")).unwrap();
     assert_eq!(saved.strokes.len(), 1);
     assert!(folder.path().join("out.glb").is_file());
+    let film = std::fs::File::open(folder.path().join("film.apng")).unwrap();
+    let film = image::codecs::png::PngDecoder::new(BufReader::new(film)).unwrap().apng().unwrap();
+    assert_eq!(film.into_frames().count(), 4, "the film has every frame");
 
     let mut wrong = Vec::new();
-    for name in ["done", "half", "painted", "problem", "help", "export", "large"] {
+    for name in ["done", "half", "beside", "wipe", "sizes", "record", "painted", "problem", "help", "export", "large"] {
         let now = shrunk(&folder.path().join(name).with_extension("png"));
         if std::env::var_os("BLESS").is_some() {
             DynamicImage::from(now.clone()).save(kept(name)).unwrap();
@@ -200,7 +238,14 @@ fn sabotage_another_picture_is_seen() {
         println!("skipped: there are no pictures to compare with");
         return;
     }
-    for (a, b) in [("done", "half"), ("done", "help"), ("done", "export"), ("done", "large")] {
+    for (a, b) in [
+        ("done", "half"),
+        ("done", "help"),
+        ("done", "export"),
+        ("done", "large"),
+        ("done", "wipe"),
+        ("beside", "wipe"),
+    ] {
         assert!(looks_like(&shrunk(&kept(a)), &shrunk(&kept(b))).is_err(), "{a} and {b}");
     }
     assert!(looks_like(&shrunk(&kept("done")), &shrunk(&kept("done"))).is_ok());

@@ -101,7 +101,7 @@ pub enum ViewName {
     Importance,
     /// Colours and textures of the input
     Plain,
-    /// What the linear solution (Eq. 1) alone would give
+    /// What the linear solution (Eq. 1) alone would give, crossings in red
     Classic,
     /// The linear solution beside the certified growth
     Compare,

@@ -40,6 +40,15 @@ pub(super) fn check(complex: &Complex, positions: &[Vec3A]) -> Check {
     cells(complex).map(|(cell, corners)| check_cell(cell, corners, positions)).reduce(|| Check::NOTHING, Check::and)
 }
 
+/// Cells with an element that is not positive in a state, rising. Exact.
+pub(super) fn inverted_cells(complex: &Complex, positions: &[Vec3A]) -> Vec<usize> {
+    let check_cell = checker(complex.dimension);
+    cells(complex)
+        .filter(|&(cell, corners)| check_cell(cell, corners, positions).inverted > 0)
+        .map(|(cell, _)| cell)
+        .collect()
+}
+
 /// Checks all elements of the state `to`, and whether they are positive all the way there; where that is not proven, at
 /// `samples`, parts of the way.
 pub(super) fn check_way(complex: &Complex, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> (Check, bool) {

@@ -14,6 +14,7 @@
 mod elements;
 mod fidelity;
 mod motion;
+mod place;
 mod predicates;
 mod star;
 mod surface;
@@ -21,6 +22,7 @@ mod tree;
 
 pub(crate) use elements::flat_stays_positive;
 pub use fidelity::{Distortion, Fidelity, RegionFidelity, distortion, fidelity, volume_ratios};
+pub use place::Places;
 pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};
 pub use surface::Surface;
 pub use tree::{Bounds, Posed, Tree};

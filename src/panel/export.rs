@@ -17,31 +17,13 @@ pub struct ExportChoice {
     pub colour_growth: bool,
     /// Length of the growth, seconds.
     pub seconds: f32,
-    /// Length of the film, seconds, rests and the way back included.
-    pub film_seconds: f32,
-    /// Width and height of the film, pixels.
-    pub film_size: [u32; 2],
-    /// Whether a legend explains the film's colours.
-    pub film_legend: bool,
 }
 
 impl Default for ExportChoice {
     fn default() -> Self {
-        Self {
-            is_open: false,
-            format: "glb",
-            colour_mesh: false,
-            colour_growth: true,
-            seconds: 4.0,
-            film_seconds: 6.0,
-            film_size: FILM_SIZES[0],
-            film_legend: true,
-        }
+        Self { is_open: false, format: "glb", colour_mesh: false, colour_growth: true, seconds: 4.0 }
     }
 }
-
-/// Sizes of films to choose from.
-const FILM_SIZES: [[u32; 2]; 4] = [[1280, 720], [1920, 1080], [3840, 2160], [1080, 1080]];
 
 /// Formats a mesh can be written in.
 pub const MESH_FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
@@ -64,12 +46,12 @@ pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &m
                 );
                 ui.add_space(6.0);
             }
-            ui.add_enabled_ui(is_done, |ui| content(ui, facts, &mut choice.export, wishes));
+            ui.add_enabled_ui(is_done, |ui| content(ui, &mut choice.export, wishes));
         });
     choice.export.is_open = is_open;
 }
 
-fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
+fn content(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
     part(
         ui,
         "Warped mesh",
@@ -97,20 +79,6 @@ fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut V
             ui.checkbox(&mut export.colour_growth, "colours of importance");
         },
     );
-    if facts.can_record {
-        let hint = "MP4 or GIF, as the name ends; seen from where the view stands now, in its colours";
-        part(ui, "Film", hint, Asked::ExportFilm, wishes, |ui| {
-            ui.add(egui::DragValue::new(&mut export.film_seconds).range(0.5..=600.0).speed(0.05).suffix(" s"))
-                .on_hover_text("Length, rests and the way back included");
-            let name = |[width, height]: [u32; 2]| format!("{width}×{height}");
-            egui::ComboBox::from_id_salt("size").width(90.0).selected_text(name(export.film_size)).show_ui(ui, |ui| {
-                for size in FILM_SIZES {
-                    ui.selectable_value(&mut export.film_size, size, name(size));
-                }
-            });
-            ui.checkbox(&mut export.film_legend, "legend");
-        });
-    }
     part(ui, "Report", "JSON: what was asked, achieved and proven", Asked::ExportReport, wishes, |_| {});
 }
 

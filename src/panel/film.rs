@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Sense, Ui, pos2, vec2};
 
 use super::{Choice, Easing, Facts, Repeat, theme};
 
-pub(super) fn show(root: &mut Ui, facts: &Facts, choice: &mut Choice, _: &mut [super::Wish]) {
+pub(super) fn show(root: &mut Ui, facts: &Facts, choice: &mut Choice) {
     egui::Panel::bottom("film").frame(theme::bar_frame()).show(root, |ui| {
         let film = &facts.snapshot.film;
         ui.add_enabled_ui(film.len() > 1, |ui| {
@@ -26,12 +26,28 @@ pub(super) fn show(root: &mut Ui, facts: &Facts, choice: &mut Choice, _: &mut [s
                 ui.add_sized([58.0, 24.0], egui::Label::new(egui::RichText::new(readout).monospace()))
                     .on_hover_text("Growth: 0 is the rest shape, 1 all of what is asked for");
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    #[cfg(feature = "record")]
+                    record(ui, facts, choice);
                     settings(ui, choice);
                     track(ui, facts, choice);
                 });
             });
         });
     });
+}
+
+/// Opens the record dialog; while a film is being recorded it says how far it is.
+#[cfg(feature = "record")]
+fn record(ui: &mut Ui, facts: &Facts, choice: &mut Choice) {
+    let text = match &facts.filming {
+        Some(film) => format!("⏺ {} %", 100 * film.drawn / film.frames.max(1)),
+        None => "⏺ Record…".into(),
+    };
+    let text = egui::RichText::new(text).color(theme::RED);
+    let hint = "A film of the growth: MP4, GIF, PNGs  (Ctrl+R)";
+    if ui.add(egui::Button::new(text).min_size(vec2(84.0, 24.0))).on_hover_text(hint).clicked() {
+        super::record::open(choice, facts.title);
+    }
 }
 
 /// From right to left.

@@ -33,6 +33,7 @@ const KEYS: [(&str, &[(&str, &str)]); 4] = [
         &[
             ("Ctrl + O", "open"),
             ("Ctrl + S", "save the scene"),
+            ("Ctrl + R", "record a film"),
             ("F12", "picture of the window"),
             ("drop", "mesh, picture, table, scene"),
             ("?  F1", "this help"),

@@ -4,12 +4,15 @@
 //! wants; it computes nothing and opens no file. So panels can be drawn anywhere, and everything they can do can be
 //! done by a test or a script.
 
+mod compare;
 mod export;
 mod film;
 mod gallery;
 mod help;
 mod importance;
 mod player;
+#[cfg(feature = "record")]
+mod record;
 mod scene;
 mod solver;
 mod statistics;
@@ -20,6 +23,8 @@ mod view;
 pub use export::{ExportChoice, MESH_FORMATS};
 pub use gallery::card_id;
 pub use player::{Easing, Player, Repeat};
+#[cfg(feature = "record")]
+pub use record::{FilmFacts, RecordChoice, open as open_record};
 pub use solver::Pending;
 
 use std::path::{Path, PathBuf};
@@ -61,8 +66,13 @@ pub struct Facts<'a> {
     pub warnings: &'a [String],
     /// Whether the session before ended without being closed, and what it had open can be had again.
     pub can_restore: bool,
-    /// Whether films can be recorded.
-    pub can_record: bool,
+    /// The film that is being recorded.
+    #[cfg(feature = "record")]
+    pub filming: Option<FilmFacts<'a>>,
+    /// One line about the film that was recorded last.
+    pub filmed: Option<&'a str>,
+    /// Where the names of the reference shapes go, window's points.
+    pub sizes: Vec<(egui::Pos2, &'static str)>,
 }
 
 /// What the left mouse button does on the surface.
@@ -120,6 +130,9 @@ pub struct Choice {
     pub gallery: bool,
     /// The export dialog, if it is open, and what it is set to.
     pub export: ExportChoice,
+    /// The record dialog, and what it is set to.
+    #[cfg(feature = "record")]
+    pub record: RecordChoice,
     /// Value of the next fill.
     pub fill_value: f32,
     /// Ends of the next gradient.
@@ -147,6 +160,8 @@ impl Default for Choice {
             help: false,
             gallery: false,
             export: ExportChoice::default(),
+            #[cfg(feature = "record")]
+            record: RecordChoice::default(),
             fill_value: 2.0,
             gradient: [0.5, 2.0],
             typed_path: String::new(),
@@ -215,6 +230,8 @@ pub enum Wish {
     SetKeys(usize),
     /// Stops solving.
     Cancel,
+    /// Stops the film that is being recorded.
+    StopFilm,
     /// Solves what was stopped.
     Resume,
     /// Looks at all of it.
@@ -236,7 +253,7 @@ pub enum Wish {
 /// Draws everything; what is left in the middle is the view's. In egui's points.
 pub fn draw(root: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) -> egui::Rect {
     top::show(root, facts, choice, wishes);
-    film::show(root, facts, choice, wishes);
+    film::show(root, facts, choice);
     egui::Panel::left("left").resizable(false).exact_size(theme::SIDE).frame(theme::side_frame()).show(root, |ui| {
         theme::scroll(ui, "left", |ui| {
             scene::show(ui, facts, choice, wishes);
@@ -252,9 +269,13 @@ pub fn draw(root: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<
     });
     let middle = root.available_rect_before_wrap();
     view::legend(root.ctx(), facts, middle);
+    view::sizes(root.ctx(), facts, middle);
+    compare::show(root.ctx(), facts, choice, middle);
     top::problem(root.ctx(), facts, middle, wishes);
     export::show(root.ctx(), facts, choice, wishes);
     gallery::show(root.ctx(), facts.draft.map(|draft| &draft.source), choice, wishes);
+    #[cfg(feature = "record")]
+    record::show(root.ctx(), facts, choice, wishes);
     help::show(root.ctx(), choice);
     middle
 }

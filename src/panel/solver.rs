@@ -71,6 +71,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, pending: &mut Pending, wishes: &m
                 let domain = &lattice.summary;
                 let memory = human_bytes(memory_estimate(domain.cells as f64));
                 for (name, value) in [
+                    ("Surface", format!("{} triangles", group(lattice.boundary.triangles.len()))),
                     ("Cells", group(domain.cells)),
                     ("Nodes", group(domain.nodes)),
                     ("Elements", group(domain.elements)),

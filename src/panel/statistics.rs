@@ -33,9 +33,6 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts) {
                     ui.label(theme::weak(format!("p99 {:.2}", outcome.distortion.p99)));
                 },
             );
-            theme::row(ui, "Surface", "Vertices and triangles of what is open", |ui| {
-                ui.label(format!("{} vertices", group(outcome.input.vertices)));
-            });
         }
         if let Some(counts) = snapshot.outcome.as_ref().and_then(|outcome| outcome.classic) {
             theme::row(ui, "Classic", "What the edge optimization alone (Eq. 1) would leave", |ui| {
@@ -51,7 +48,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts) {
             ui.add_space(2.0);
             let total: f64 = snapshot.seconds.iter().map(|(_, s)| s).sum();
             ui.label(theme::weak(format!("seconds by stage, {total:.1} s in all")).small());
-            stages(ui, &snapshot.seconds);
+            ui.scope(|ui| stages(ui, &snapshot.seconds));
         }
         if let Some(milliseconds) = snapshot.dab_milliseconds {
             theme::row(ui, "Dab", "From the last stroke to its linear solution", |ui| {
@@ -86,10 +83,11 @@ fn sizes(ui: &mut Ui, histogram: &Histogram) {
             .fill(theme::ACCENT)
     });
     let chart = BarChart::new("elements", bars.collect()).color(theme::ACCENT);
-    plain("sizes", 84.0)
+    plain("sizes", 66.0)
         .show_axes([true, false])
-        .include_x(-1.0)
-        .include_x(1.0)
+        // Room for the names of the ends.
+        .include_x(-1.12)
+        .include_x(1.12)
         .x_axis_formatter(|mark, _| {
             let close = |octaves: f64| (mark.value - octaves).abs() < 1.0e-6;
             if close(-1.0) {
@@ -114,6 +112,7 @@ fn stages(ui: &mut Ui, seconds: &[(&'static str, f64)]) {
     stages.sort_by(|a, b| b.1.total_cmp(&a.1));
     stages.truncate(6);
     let longest = stages.first().map_or(1.0, |(_, s)| s.max(1.0e-9));
+    ui.spacing_mut().item_spacing.y = 1.0;
     for (name, s) in stages {
         ui.horizontal(|ui| {
             ui.spacing_mut().interact_size.y = 15.0;

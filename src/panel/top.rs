@@ -25,7 +25,7 @@ pub(super) fn show(root: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &m
             }
             if ui
                 .add_enabled(can_save, egui::Button::new("Export…"))
-                .on_hover_text("Warped mesh, growth, report")
+                .on_hover_text("Warped mesh, growth, report: files")
                 .clicked()
             {
                 choice.export.is_open = true;

@@ -41,14 +41,13 @@ pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
             ui.checkbox(&mut choice.orthographic, "Parallel").on_hover_text("Parallels stay parallel");
         });
         theme::row(ui, "Classic", "What the edge optimization alone (Eq. 1) gives; crossings are red", |ui| {
-            let all = [(Compare::Off, "off", ""), (Compare::SideBySide, "beside", ""), (Compare::Wipe, "wipe", "")];
+            let all = [
+                (Compare::Off, "off", "The certified growth alone"),
+                (Compare::SideBySide, "beside", "Eq. 1 to the left of the certified growth"),
+                (Compare::Wipe, "wipe", "Eq. 1 left of a line that can be dragged"),
+            ];
             theme::choices(ui, &mut choice.compare, &all);
         });
-        if choice.compare == Compare::Wipe {
-            theme::row(ui, "Line", "Classic to the left, certified to the right", |ui| {
-                ui.add(egui::Slider::new(&mut choice.wipe, 0.0..=1.0).show_value(false));
-            });
-        }
         theme::row(ui, "Look from", "1, 3, 7; with Ctrl from the other side", |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             for (axis, name) in [(Axis::Front, "front"), (Axis::Right, "side"), (Axis::Top, "top")] {
@@ -63,6 +62,18 @@ pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     });
 }
 
+/// The names of the reference shapes, where they stand in the view.
+pub(super) fn sizes(ctx: &Context, facts: &Facts, middle: egui::Rect) {
+    let layer = egui::LayerId::new(egui::Order::Background, egui::Id::new("sizes"));
+    let painter = ctx.layer_painter(layer).with_clip_rect(middle);
+    for (at, name) in &facts.sizes {
+        let galley = painter.layout_no_wrap((*name).into(), egui::FontId::proportional(13.0), Color32::from_gray(40));
+        let rect = egui::Align2::CENTER_BOTTOM.anchor_size(*at - egui::vec2(0.0, 3.0), galley.size());
+        painter.rect_filled(rect.expand2(egui::vec2(3.0, 0.0)), 3.0, Color32::from_white_alpha(170));
+        painter.galley(rect.min, galley, Color32::BLACK);
+    }
+}
+
 /// What colours mean, in the lower left corner of the view.
 pub(super) fn legend(ctx: &Context, facts: &Facts, middle: egui::Rect) {
     let Some(legend) = &facts.legend else { return };
@@ -75,7 +86,7 @@ pub(super) fn legend(ctx: &Context, facts: &Facts, middle: egui::Rect) {
         .pivot(egui::Align2::LEFT_BOTTOM)
         .fixed_pos(at)
         .show(ctx, |ui| {
-            let fill = Color32::from_white_alpha(215);
+            let fill = Color32::from_white_alpha(225);
             egui::Frame::new().fill(fill).corner_radius(6.0).inner_margin(10.0).show(ui, |ui| bar(ui, legend));
         });
 }
@@ -88,7 +99,7 @@ fn bar(ui: &mut Ui, legend: &Legend) {
         ui.label(egui::RichText::new(legend.title).strong());
         ui.label(theme::weak(legend.unit).small());
     });
-    let (rect, _) = ui.allocate_exact_size(BAR + egui::vec2(24.0, 16.0), egui::Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(BAR + egui::vec2(24.0, 18.0), egui::Sense::hover());
     let bar = egui::Rect::from_min_size(rect.min + egui::vec2(12.0, 0.0), BAR);
     let mut mesh = egui::Mesh::default();
     let last = (legend.stops.len().max(2) - 1) as f32;
@@ -104,7 +115,7 @@ fn bar(ui: &mut Ui, legend: &Legend) {
         }
     }
     ui.painter().add(mesh);
-    let (colour, font) = (ui.visuals().text_color(), egui::TextStyle::Small.resolve(ui.style()));
+    let (colour, font) = (Color32::from_gray(30), egui::FontId::proportional(12.0));
     for (t, text) in &legend.ticks {
         let x = egui::lerp(bar.left()..=bar.right(), *t);
         let tick = [egui::pos2(x, bar.bottom()), egui::pos2(x, bar.bottom() + 3.0)];

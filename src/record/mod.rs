@@ -135,9 +135,12 @@ fn reel(settings: &Settings) -> Reel {
 
 fn findings(subject: &mut Subject, settings: &Settings, frame: &FramePlan) -> Findings {
     let shows_classic = matches!(settings.view, View::Classic | View::Compare);
+    let classic = shows_classic.then(|| subject.classic_certificate(frame.lambda));
+    let is_faulty = classic.as_ref().is_some_and(|found| !found.certified());
     Findings {
         growth: (settings.view != View::Classic).then(|| subject.certificate(frame.mix)),
-        classic: shows_classic.then(|| subject.classic_certificate(frame.lambda)),
+        classic,
+        faulty: is_faulty.then(|| subject.classic_faults(frame.lambda)),
     }
 }
 

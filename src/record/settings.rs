@@ -51,9 +51,9 @@ pub enum View {
     Importance,
     /// Colours and textures of the input.
     Plain,
-    /// What Eq. 1 alone would give, in the colours of importance.
+    /// What Eq. 1 alone would give, grey, what crosses or is turned over red.
     Classic,
-    /// Eq. 1 alone on the left, the certified growth on the right.
+    /// Eq. 1 alone on the left, as in [`Classic`](Self::Classic), the certified growth on the right.
     Compare,
     /// The lattice's cells.
     Voxels,

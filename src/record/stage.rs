@@ -1,5 +1,7 @@
 //! The studio with the subject in it: one picture for each frame of the plan.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 use image::RgbaImage;
 
@@ -31,6 +33,8 @@ pub(super) struct Findings {
     pub growth: Option<Certificate>,
     /// Of Eq. 1 alone, where it is shown.
     pub classic: Option<Certificate>,
+    /// Triangles that are faulty there.
+    pub faulty: Option<Arc<Vec<u32>>>,
 }
 
 /// A studio.
@@ -52,11 +56,12 @@ impl Stage {
         let looks = looks(subject, settings.view);
         let shown = |looks: &Looks| Shown { looks: looks.clone(), ..Shown::new(subject.body()) };
         let shows_classic = matches!(settings.view, View::Classic | View::Compare);
-        let classic = shows_classic.then(|| renderer.show(shown(&looks)));
+        // In grey, on which red tells.
+        let classic = shows_classic.then(|| renderer.show(shown(&Looks::default())));
         let growth = (settings.view != View::Classic).then(|| renderer.show(shown(&looks)));
         let slate = Slate::new(Writing {
             title: settings.title.clone(),
-            legend: looks.legend().filter(|_| settings.legend),
+            legend: looks.legend().filter(|_| settings.legend && growth.is_some()),
             captions: Vec::new(),
             on_paper: settings.transparent,
         });
@@ -75,7 +80,7 @@ impl Stage {
         let mut stage = Self { renderer, growth, classic, slate, lens, orbit, apart };
         // Shaders, letters and textures come with the first picture, which is not shown.
         if let Some(first) = plan.first() {
-            stage.picture(subject, first, &Findings { growth: None, classic: None })?;
+            stage.picture(subject, first, &Findings { growth: None, classic: None, faulty: None })?;
         }
         Ok(stage)
     }
@@ -102,13 +107,26 @@ impl Stage {
                 self.renderer.world_mut().entity_mut(entity).insert(Placement { offset });
             }
         }
-        if self.growth.is_some() && self.classic.is_some() {
-            self.slate.caption(vec![
-                caption("linear solution alone (Eq. 1)", findings.classic.as_ref()),
-                caption("certified growth", findings.growth.as_ref()),
-            ]);
+        if let Some(classic) = self.classic {
+            self.mark(classic, findings.faulty.clone());
+            let mut captions = vec![caption("linear solution alone (Eq. 1)", findings.classic.as_ref())];
+            if self.growth.is_some() {
+                captions.push(caption("certified growth", findings.growth.as_ref()));
+            }
+            self.slate.caption(captions);
         }
         self.renderer.frame()
+    }
+}
+
+impl Stage {
+    /// Draws triangles red.
+    fn mark(&mut self, body: Entity, faulty: Option<Arc<Vec<u32>>>) {
+        if let Some(mut looks) = self.renderer.world_mut().get_mut::<Looks>(body)
+            && looks.marked != faulty
+        {
+            looks.marked = faulty;
+        }
     }
 }
 
@@ -176,7 +194,8 @@ fn caption(name: &str, found: Option<&Certificate>) -> Caption {
             let crossings = found.crossings() + found.surface_crossings();
             let count = |n: usize, one: &str, more: &str| format!("{n} {}", if n == 1 { one } else { more });
             let inverted = count(found.inverted(), "inverted element", "inverted elements");
-            (format!("{inverted}, {}", count(crossings, "crossing", "crossings")), !found.certified())
+            let red = if found.certified() { "" } else { " (red)" };
+            (format!("{inverted}, {}{red}", count(crossings, "crossing", "crossings")), !found.certified())
         }
         None => (String::new(), false),
     };

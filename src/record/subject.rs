@@ -7,7 +7,7 @@ use glam::{Vec3, Vec3A};
 
 use super::Mix;
 use crate::boundary::Boundary;
-use crate::certificate::{Certificate, certify};
+use crate::certificate::{Certificate, Places, certify};
 use crate::collision::Shell;
 use crate::film::blend;
 use crate::schedule::{Outcome, Solved};
@@ -28,6 +28,10 @@ pub struct Subject {
     importance: Arc<Vec<f32>>,
     node_importance: Arc<Vec<f32>>,
     proven: HashMap<Shot, Certificate>,
+    /// Made when Eq. 1 alone is first shown.
+    places: Option<Places>,
+    /// What of Eq. 1 alone is faulty, by the bits of λ.
+    faulty: HashMap<u32, Arc<Vec<u32>>>,
 }
 
 /// `[nodes]` in cells.
@@ -61,6 +65,8 @@ impl Subject {
             importance: Arc::new(outcome.importance.clone()),
             node_importance: Arc::new(importance),
             proven: HashMap::new(),
+            places: None,
+            faulty: HashMap::new(),
         };
         (subject, outcome)
     }
@@ -109,6 +115,14 @@ impl Subject {
     pub(super) fn classic_certificate(&mut self, lambda: f32) -> Certificate {
         let pose = self.classic_pose(lambda);
         self.prove(Shot::Classic(lambda.to_bits()), &pose)
+    }
+
+    /// Triangles of the boundary that are faulty in Eq. 1 alone at λ, rising; found once.
+    pub(super) fn classic_faults(&mut self, lambda: f32) -> Arc<Vec<u32>> {
+        let pose = self.classic_pose(lambda);
+        let places = self.places.get_or_insert_with(|| Places::new(&self.boundary, &self.complex));
+        let find = || places.faulty(&self.complex, &self.shells, &blend(&pose.from, &pose.to, pose.blend));
+        self.faulty.entry(lambda.to_bits()).or_insert_with(|| Arc::new(find())).clone()
     }
 
     fn prove(&mut self, shot: Shot, pose: &Pose) -> Certificate {

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use bevy::prelude::*;
 use glam::Vec3A;
 
-use super::{Looks, Placement};
+use super::{Looks, Picker, Placement};
 use crate::{boundary::Boundary, transfer::Binding, voxel::Complex};
 
 /// A boundary, its complex, and what ties them together. Cheap to clone.
 ///
 /// Its surface is drawn with the materials and textures of the file, or studio grey where there are none.
 #[derive(Component, Debug, Clone)]
-#[require(Looks, Placement, Transform, Visibility)]
+#[require(Looks, Picker, Placement, Transform, Visibility)]
 pub struct Body {
     /// B.
     pub boundary: Arc<Boundary>,

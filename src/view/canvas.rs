@@ -6,13 +6,14 @@ use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, prelude
 use glam::Vec3A;
 
 use super::{
-    Body, Extent, Looks, Mode, Quality, ViewFrame,
+    Body, Extent, Looks, Mode, Pose, Quality, ViewFrame,
+    awaited::Awaited,
     colours::ENTRIES,
     contact::REACH,
     drawn::{Part, Rows},
     file_materials::FileMaterial,
     material::{Coat, Shown, SurfaceMaterial, Variant},
-    state::{Sheet, State},
+    state::{Computed, Sheet, State},
     studio::{ContactMaterial, FloorPlane},
 };
 
@@ -33,6 +34,10 @@ pub(super) struct Canvas {
     states: Vec<State>,
     /// The state at rest, for a body without pose.
     pub rest: Arc<Vec<Vec3A>>,
+    /// What is shown.
+    bound: Pose,
+    /// What will be, as soon as it is computed.
+    awaited: Option<Awaited>,
     nothing: Handle<ShaderBuffer>,
     colour_map: Handle<ShaderBuffer>,
     /// Box around what is drawn, without the placement.
@@ -41,7 +46,7 @@ pub(super) struct Canvas {
 
 /// Rows with their buffers, and the parts drawn from them.
 struct Layer {
-    rows: Rows,
+    rows: Arc<Rows>,
     parts: Vec<DrawnPart>,
 }
 
@@ -62,6 +67,8 @@ pub(super) struct Easel<'a> {
     pub images: &'a mut Assets<Image>,
     pub buffers: &'a mut Assets<ShaderBuffer>,
     pub quality: Quality,
+    /// Whether new states are computed beside the frames.
+    pub is_unhurried: bool,
 }
 
 impl Canvas {
@@ -70,7 +77,7 @@ impl Canvas {
         let frame = ViewFrame::of(&body.boundary);
         let (rows, parts) = Rows::of_surface(body, &frame);
         let rest = Arc::new(body.complex.rest.clone());
-        let state = State::new(body, &frame, &rows, &rest, easel.buffers);
+        let state = State::new(&rest, Computed::new(body, &frame, &rows, &rest), easel.buffers);
         let nothing = easel.buffers.add(ShaderBuffer::from(vec![Vec4::ZERO]));
         let mut canvas = Self {
             frame,
@@ -78,12 +85,14 @@ impl Canvas {
             shown: easel.buffers.add(ShaderBuffer::from(Shown::default())),
             ghost_written: Shown::default(),
             ghost_shown: easel.buffers.add(ShaderBuffer::from(Shown { grown: 0.0, ..default() })),
-            surface: Layer { rows, parts: Vec::new() },
+            surface: Layer { rows: Arc::new(rows), parts: Vec::new() },
             blocks: None,
             ghost: Vec::new(),
             contact: None,
             extent: state.extent,
             states: vec![state],
+            bound: Pose::still(rest.clone()),
+            awaited: None,
             rest,
             colour_map: nothing.clone(),
             nothing,
@@ -181,13 +190,49 @@ impl Canvas {
         let mut drawn = self.spawn(commands, entity, part, file, &carriers, &sheet, easel);
         drawn.own.is_block = true;
         drawn.own.is_unlit = false;
-        self.blocks = Some(Layer { rows, parts: vec![drawn] });
+        self.blocks = Some(Layer { rows: Arc::new(rows), parts: vec![drawn] });
     }
 
-    /// Shows two states: finds or computes what the shaders need of them, and binds it.
-    pub fn bind(&mut self, body: &Body, from: &Arc<Vec<Vec3A>>, to: &Arc<Vec<Vec3A>>, easel: &mut Easel) {
+    /// Shows a pose: finds or computes what the shaders need of it, and binds it. Unhurried, it is shown when that is
+    /// computed, and what was shown stays until then.
+    pub fn bind(&mut self, body: &Body, wanted: &Pose, easel: &mut Easel) {
         self.states.retain(State::is_alive);
-        let pair = [from, to].map(|state| self.state(body, state, easel));
+        if let Some(finished) = self.awaited.as_mut().and_then(Awaited::finished) {
+            for (state, computed) in finished {
+                self.states.push(State::new(&state, computed, easel.buffers));
+            }
+            if let Some(awaited) = self.awaited.take() {
+                self.bound = awaited.pose;
+            }
+        }
+        if self.awaited.is_none() {
+            let is_known = |state: &Arc<Vec<Vec3A>>| self.states.iter().any(|s| s.is_of(state));
+            if !easel.is_unhurried || (is_known(&wanted.from) && is_known(&wanted.to)) {
+                self.bound = wanted.clone();
+            } else {
+                self.awaited = Some(Awaited::begin(body, self.frame, &self.surface.rows, wanted, is_known));
+            }
+        }
+        if Arc::ptr_eq(&self.bound.from, &wanted.from) && Arc::ptr_eq(&self.bound.to, &wanted.to) {
+            self.bound.blend = wanted.blend;
+        }
+        self.attach(body, easel);
+    }
+
+    /// Between which states the shown one lies, 0..=1.
+    pub fn blend(&self) -> f32 {
+        self.bound.blend.clamp(0.0, 1.0)
+    }
+
+    /// Whether something else is to be shown than what is.
+    pub fn is_waiting(&self) -> bool {
+        self.awaited.is_some()
+    }
+
+    /// Binds what is to be shown.
+    fn attach(&mut self, body: &Body, easel: &mut Easel) {
+        let Pose { from, to, .. } = self.bound.clone();
+        let pair = [&from, &to].map(|state| self.state(body, state, easel));
         let [from, to] = pair.map(|k| &self.states[k]);
         self.extent = from.extent.union(to.extent);
         let layers = std::iter::once((&self.surface, false)).chain(self.blocks.as_ref().map(|layer| (layer, true)));
@@ -225,7 +270,8 @@ impl Canvas {
     fn state(&mut self, body: &Body, state: &Arc<Vec<Vec3A>>, easel: &mut Easel) -> usize {
         let known = self.states.iter().position(|s| s.is_of(state));
         let k = known.unwrap_or_else(|| {
-            self.states.push(State::new(body, &self.frame, &self.surface.rows, state, easel.buffers));
+            let computed = Computed::new(body, &self.frame, &self.surface.rows, state);
+            self.states.push(State::new(state, computed, easel.buffers));
             self.states.len() - 1
         });
         if let Some(layer) = &self.blocks {
@@ -254,6 +300,12 @@ impl Canvas {
             let is_shown = is_blocks == has_blocks;
             for part in &layer.parts {
                 commands.entity(part.entity).insert(if is_shown { Visibility::Inherited } else { Visibility::Hidden });
+                // Of two bodies in one place one casts the shadow on the floor.
+                if looks.wipe.is_some_and(|wipe| wipe.keeps_left) {
+                    commands.entity(part.entity).insert(NotShadowCaster);
+                } else {
+                    commands.entity(part.entity).remove::<NotShadowCaster>();
+                }
                 let Some(mut material) = easel.materials.get_mut(&part.material).filter(|_| is_shown) else { continue };
                 material.variant = Variant {
                     coat: if mapped.is_some() { Coat::Mapped } else { Coat::Own },

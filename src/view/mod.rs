@@ -15,6 +15,7 @@
 //! - [`headless`] renders without a window; [`adapter`] says beforehand whether anything can be rendered.
 
 mod adapter;
+mod awaited;
 mod body;
 mod canvas;
 mod colours;
@@ -38,13 +39,14 @@ mod state;
 mod studio;
 
 pub use adapter::{Adapter, Quality, adapter};
+pub use awaited::Unhurried;
 pub use body::{Body, Pose};
 pub use cursor::{Cursor, Dab};
 pub use frame::{Extent, Placement, ViewFrame};
 pub use ghost::Ghost;
 pub use looks::{Legend, Looks, Mode, VoxelColour, Wipe};
 pub use orbit::{Axis, FIELD_OF_VIEW, Orbit};
-pub use pick::{Hit, Picker, Target};
+pub use pick::{Hit, Picker, RestShape, Target};
 pub use size_legend::SizeLegend;
 pub use state::extent;
 pub use studio::{Backdrop, Studio};

@@ -123,6 +123,13 @@ impl Orbit {
         self.target += self.rotation() * Vec3::new(cursor.x, -cursor.y, 0.0) * height;
     }
 
+    /// Where a place is seen: from the middle of the picture, in heights of the picture, y down; `None` behind the camera.
+    pub fn seen(&self, place: Vec3) -> Option<Vec2> {
+        let p = self.rotation().inverse() * (place - self.eye());
+        let depth = if self.orthographic { self.distance } else { -p.z };
+        (depth > 0.0).then(|| Vec2::new(p.x, -p.y) / (2.0 * depth * (0.5 * FIELD_OF_VIEW).tan()))
+    }
+
     /// Looks at a box so that it fills the picture of this aspect (width / height) with a margin.
     pub fn frame(&mut self, Extent { low, high }: Extent, aspect: f32) {
         self.target = 0.5 * (low + high);
@@ -175,9 +182,7 @@ mod tests {
 
     /// Where a place is on the screen, in heights of the picture from its middle, y down.
     fn seen(orbit: &Orbit, place: Vec3) -> Vec2 {
-        let p = orbit.rotation().inverse() * (place - orbit.eye());
-        let depth = if orbit.orthographic { orbit.distance } else { -p.z };
-        Vec2::new(p.x, -p.y) / (2.0 * depth * (0.5 * FIELD_OF_VIEW).tan())
+        orbit.seen(place).expect("a place before the camera")
     }
 
     #[test]
@@ -217,6 +222,14 @@ mod tests {
                 (0..8).map(|k| seen(&orbit, corner(k)).abs()).fold(0.0_f32, |m, p| m.max(p.y).max(p.x / aspect));
             assert!((0.4..=0.5).contains(&reach), "{orthographic} {aspect}: {reach}");
         }
+    }
+
+    #[test]
+    fn what_is_behind_is_not_seen() {
+        let orbit = Orbit::default();
+        let behind = orbit.eye() + orbit.rotation() * Vec3::Z;
+        assert_eq!(orbit.seen(behind), None);
+        assert!(orbit.seen(orbit.target).is_some_and(|at| at.length() < 1e-5));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use glam::Vec3A;
 use rayon::prelude::*;
 
 use super::{Body, Placement, Pose, ViewFrame, state::placed};
+use crate::boundary::Boundary;
 use crate::certificate::{Bounds, Posed, Tree};
 
 /// Vertices per parallel task.
@@ -40,11 +41,12 @@ pub struct Hit {
     pub distance: f32,
 }
 
-/// Finds what a ray meets; keeps its trees and the present state between calls. [`ViewPlugin`](super::ViewPlugin) gives
-/// every [`Body`] one.
+/// Finds what a ray meets; keeps its trees and the present state between calls. Every [`Body`] has one.
 #[derive(Component, Default)]
 pub struct Picker {
-    rest: Option<Shape>,
+    /// Whose shapes are kept.
+    boundary: Weak<Boundary>,
+    rest: Option<Arc<RestShape>>,
     posed: Option<Shape>,
     /// `[vertices]` of states seen lately.
     states: Vec<(Weak<Vec<Vec3A>>, Vec<Vec3A>)>,
@@ -54,6 +56,19 @@ pub struct Picker {
 
 /// A pose, without holding its states: from, to, blend.
 type Held = (Weak<Vec<Vec3A>>, Weak<Vec<Vec3A>>, f32);
+
+/// A boundary at rest with the boxes around its triangles: some fifty milliseconds for 150,000 triangles, so whoever reads
+/// a file makes it there, and nobody waits for it at the first click.
+pub struct RestShape(Shape);
+
+impl RestShape {
+    /// Of a boundary, which is to be picked in the [`ViewFrame`] of the same.
+    pub fn new(boundary: &Boundary) -> Self {
+        let frame = ViewFrame::of(boundary);
+        let at = |p: &glam::DVec3| Vec3A::from(frame.world_from_source(*p));
+        Self(Shape::new(&boundary.triangles, boundary.positions.par_iter().map(at).collect()))
+    }
+}
 
 /// A surface and the boxes around its triangles.
 struct Shape {
@@ -66,6 +81,11 @@ struct Shape {
 const MOST_STATES: usize = 4;
 
 impl Picker {
+    /// One that need not look at the boundary any more.
+    pub fn prepared(boundary: &Arc<Boundary>, rest: Arc<RestShape>) -> Self {
+        Self { boundary: Arc::downgrade(boundary), rest: Some(rest), ..Self::default() }
+    }
+
     /// The nearest triangle along a ray in view space, seen from either side. The first call for a new state costs a few
     /// milliseconds for 100,000 triangles, further ones microseconds.
     pub fn pick(
@@ -80,15 +100,13 @@ impl Picker {
         let direction = Vec3A::from(ray.direction.as_vec3());
         let frame = ViewFrame::of(&body.boundary);
         let triangles = &body.boundary.triangles;
-        if self.rest.is_none() {
-            let at = |p: &glam::DVec3| Vec3A::from(frame.world_from_source(*p));
-            self.rest = Some(Shape::new(body, body.boundary.positions.par_iter().map(at).collect()));
+        if !std::ptr::eq(self.boundary.as_ptr(), Arc::as_ptr(&body.boundary)) {
+            *self = Self { boundary: Arc::downgrade(&body.boundary), ..Self::default() };
         }
-        if let (Target::Surface, Some(pose)) = (target, pose) {
-            self.follow(body, &frame, pose);
-        }
-        let rest = self.rest.as_ref()?;
-        let shape = if target == Target::Surface { self.posed.as_ref().unwrap_or(rest) } else { rest };
+        let rest = self.rest.get_or_insert_with(|| Arc::new(RestShape::new(&body.boundary))).clone();
+        let rest = &rest.0;
+        let posed = pose.filter(|_| target == Target::Surface).and_then(|pose| self.follow(body, &frame, rest, pose));
+        let shape = posed.unwrap_or(rest);
         let corners = |t: u32, positions: &[Vec3A]| triangles[t as usize].map(|v| positions[v as usize]);
         let (triangle, distance) = shape.tree.first_along(&shape.boxes, origin, direction, |t| {
             meet(origin, direction, corners(t, &shape.positions)).map(|(distance, _)| distance)
@@ -107,15 +125,15 @@ impl Picker {
         })
     }
 
-    /// Brings the posed shape to a pose.
-    fn follow(&mut self, body: &Body, frame: &ViewFrame, pose: &Pose) {
+    /// The shape in a pose; `None` for states of another complex.
+    fn follow(&mut self, body: &Body, frame: &ViewFrame, rest: &Shape, pose: &Pose) -> Option<&Shape> {
         let is = |weak: &Weak<Vec<Vec3A>>, state: &Arc<Vec<Vec3A>>| std::ptr::eq(weak.as_ptr(), Arc::as_ptr(state));
         let same = |(from, to, blend): &Held| is(from, &pose.from) && is(to, &pose.to) && *blend == pose.blend;
         if self.pose.as_ref().is_some_and(same) {
-            return;
+            return self.posed.as_ref();
         }
         if pose.from.len() != body.complex.nodes() || pose.to.len() != body.complex.nodes() {
-            return;
+            return None;
         }
         for state in [&pose.from, &pose.to] {
             if !self.states.iter().any(|(weak, _)| is(weak, state)) {
@@ -127,42 +145,39 @@ impl Picker {
             }
         }
         let find = |state| self.states.iter().find(|(weak, _)| is(weak, state)).map(|(_, positions)| positions);
-        let (Some(from), Some(to)) = (find(&pose.from), find(&pose.to)) else { return };
+        let (from, to) = (find(&pose.from)?, find(&pose.to)?);
         let blend = pose.blend.clamp(0.0, 1.0);
         let blended = from.par_iter().zip(to).with_min_len(VERTICES_PER_TASK).map(|(a, b)| a.lerp(*b, blend));
         match &mut self.posed {
             Some(shape) => {
                 blended.collect_into_vec(&mut shape.positions);
-                shape.refit(body);
+                shape.refit(&body.boundary.triangles);
             }
             None => {
                 // The order of the rest shape is as good: neighbours stay neighbours.
-                let tree = self.rest.as_ref().map(|rest| rest.tree.clone());
-                let positions = blended.collect();
-                let mut shape = match tree {
-                    Some(tree) => Shape { positions, tree, boxes: Posed::default() },
-                    None => Shape::new(body, positions),
-                };
-                shape.refit(body);
+                let mut shape =
+                    Shape { positions: blended.collect(), tree: rest.tree.clone(), boxes: Posed::default() };
+                shape.refit(&body.boundary.triangles);
                 self.posed = Some(shape);
             }
         }
         self.pose = Some((Arc::downgrade(&pose.from), Arc::downgrade(&pose.to), pose.blend));
+        self.posed.as_ref()
     }
 }
 
 impl Shape {
-    fn new(body: &Body, positions: Vec<Vec3A>) -> Self {
+    fn new(triangles: &[[u32; 3]], positions: Vec<Vec3A>) -> Self {
         let centre = |t: &[u32; 3]| t.map(|v| positions[v as usize]).into_iter().sum::<Vec3A>() / 3.0;
-        let centres: Vec<Vec3A> = body.boundary.triangles.par_iter().map(centre).collect();
+        let centres: Vec<Vec3A> = triangles.par_iter().map(centre).collect();
         let tree = Tree::new(&centres);
         let mut shape = Self { positions, tree, boxes: Posed::default() };
-        shape.refit(body);
+        shape.refit(triangles);
         shape
     }
 
-    fn refit(&mut self, body: &Body) {
-        let (triangles, positions) = (&body.boundary.triangles, &self.positions);
+    fn refit(&mut self, triangles: &[[u32; 3]]) {
+        let positions = &self.positions;
         self.boxes = self.tree.posed(|t| Bounds::of(triangles[t as usize].map(|v| positions[v as usize])));
     }
 }

@@ -5,7 +5,7 @@ use bevy::{
 };
 
 use super::{
-    Body, Cursor, Extent, Ghost, Looks, Picker, Placement, Pose, Quality, ViewSystems,
+    Body, Cursor, Extent, Ghost, Looks, Placement, Pose, Quality, Unhurried, ViewSystems,
     canvas::{Canvas, Easel},
     material::{MOST_BRUSHES, Shown, SurfaceMaterial},
     studio::ContactMaterial,
@@ -33,6 +33,7 @@ pub(super) struct Easels<'w> {
     images: ResMut<'w, Assets<Image>>,
     buffers: ResMut<'w, Assets<ShaderBuffer>>,
     quality: Res<'w, Quality>,
+    unhurried: Option<ResMut<'w, Unhurried>>,
 }
 
 impl Easels<'_> {
@@ -44,6 +45,7 @@ impl Easels<'_> {
             images: &mut self.images,
             buffers: &mut self.buffers,
             quality: *self.quality,
+            is_unhurried: self.unhurried.is_some(),
         }
     }
 }
@@ -56,7 +58,7 @@ fn prepare(mut commands: Commands, bodies: Query<(Entity, &Body, Option<&Canvas>
         }
         let canvas = Canvas::new(&mut commands, entity, body, &mut easels.easel());
         let frame = canvas.frame;
-        commands.entity(entity).insert((canvas, frame, Picker::default()));
+        commands.entity(entity).insert((canvas, frame));
     }
 }
 
@@ -79,12 +81,16 @@ fn dress(mut commands: Commands, mut bodies: Query<(Entity, Ref<Body>, Ref<Looks
 fn pose(mut bodies: Query<(&Body, Option<&Pose>, &mut Canvas)>, mut easels: Easels) {
     for (body, pose, mut canvas) in &mut bodies {
         let rest = canvas.rest.clone();
-        let (from, to) = pose.map_or((&rest, &rest), |pose| (&pose.from, &pose.to));
+        let pose = pose.cloned().unwrap_or_else(|| Pose::still(rest));
         // A state of another complex would be read out of bounds.
         let fits = |state: &[glam::Vec3A]| state.len() == body.complex.nodes();
-        if fits(from) && fits(to) {
-            canvas.bind(body, from, to, &mut easels.easel());
+        if fits(&pose.from) && fits(&pose.to) {
+            canvas.bind(body, &pose, &mut easels.easel());
         }
+    }
+    let is_waiting = bodies.iter().any(|(_, _, canvas)| canvas.is_waiting());
+    if let Some(unhurried) = &mut easels.unhurried {
+        unhurried.set_if_neq(Unhurried { is_waiting });
     }
 }
 
@@ -111,11 +117,11 @@ fn haunt(mut commands: Commands, mut bodies: Query<(Entity, Ref<Body>, Has<Ghost
 }
 
 /// What is written each frame.
-type Written<'a> = (&'a Looks, Option<&'a Pose>, Option<&'a Cursor>, Option<&'a Ghost>, &'a mut Canvas);
+type Written<'a> = (&'a Looks, Option<&'a Cursor>, Option<&'a Ghost>, &'a mut Canvas);
 
 fn write(mut bodies: Query<Written>, mut buffers: ResMut<Assets<ShaderBuffer>>) {
-    for (looks, pose, cursor, ghost, mut canvas) in &mut bodies {
-        let mut shown = Shown { blend: pose.map_or(0.0, |pose| pose.blend.clamp(0.0, 1.0)), ..default() };
+    for (looks, cursor, ghost, mut canvas) in &mut bodies {
+        let mut shown = Shown { blend: canvas.blend(), ..default() };
         if let Some(wipe) = looks.wipe {
             shown.wipe_at = wipe.at;
             shown.wipe_side = if wipe.keeps_left { 1.0 } else { -1.0 };

@@ -3,7 +3,7 @@
 use bevy::{camera::visibility::NoFrustumCulling, prelude::*, render::storage::ShaderBuffer};
 
 use super::{
-    Quality, ViewSystems,
+    Extent, Quality, ViewSystems,
     material::{SurfaceMaterial, still},
 };
 
@@ -56,24 +56,43 @@ fn present(
     }
 }
 
+/// Between neighbours, in widths of ×1: room for their names.
+const GAP: f32 = 1.7;
+
 impl SizeLegend {
+    /// Width of the row, in widths of ×1.
+    pub const WIDTH: f32 = Self::FACTORS[0] + Self::FACTORS[1] + Self::FACTORS[2] + Self::FACTORS[3] + 3.0 * GAP;
+
     /// The size factors, in order from left to right.
     pub const FACTORS: [f32; 4] = [0.5, 1.0, 2.0, 4.0];
 
-    /// Where the labels go: the foot of each shape in view space, and what to write there.
+    /// Where the labels go: the top of each shape in view space, and what to write above it.
     pub fn labels(&self) -> [(Vec3, &'static str); 4] {
         let names = ["×½", "×1", "×2", "×4"];
         let centres = self.centres();
-        std::array::from_fn(|k| (centres[k], names[k]))
+        // Cubes stand on their centres' foot, discs lie around theirs.
+        let height = if self.is_flat { 0.5 } else { 1.0 };
+        std::array::from_fn(|k| (centres[k] + Vec3::Y * height * Self::FACTORS[k] * self.unit, names[k]))
+    }
+
+    /// The box around the row, view space.
+    pub fn extent(&self) -> Extent {
+        let half = 0.5 * Self::FACTORS[3] * self.unit;
+        let width = 0.5 * self.unit * Self::WIDTH;
+        let below = if self.is_flat { half } else { 0.0 };
+        let depth = if self.is_flat { 0.0 } else { half };
+        Extent {
+            low: self.at - Vec3::new(width, below, depth),
+            high: self.at + Vec3::new(width, 2.0 * half - below, depth),
+        }
     }
 
     /// The foot of each shape, view space.
     pub fn centres(&self) -> [Vec3; 4] {
-        // A gap of the width of ×1 between neighbours.
-        let mut x = -0.5 * self.unit * (Self::FACTORS.iter().sum::<f32>() + 3.0);
+        let mut x = -0.5 * self.unit * Self::WIDTH;
         Self::FACTORS.map(|factor| {
             let centre = x + 0.5 * factor * self.unit;
-            x += (factor + 1.0) * self.unit;
+            x += (factor + GAP) * self.unit;
             self.at + Vec3::X * centre
         })
     }

@@ -27,6 +27,15 @@ pub(super) struct State {
     lift: f32,
 }
 
+/// What is drawn of a state, not on the GPU yet.
+pub(super) struct Computed {
+    nodes: ShaderBuffer,
+    normals: ShaderBuffer,
+    shade: ShaderBuffer,
+    extent: Extent,
+    lift: f32,
+}
+
 /// What the shader pulls from.
 #[derive(Clone)]
 pub(super) struct Sheet {
@@ -88,6 +97,22 @@ fn lowest(body: &Body, positions: &[Vec3A]) -> f32 {
     if lowest.is_finite() { lowest } else { 0.0 }
 }
 
+impl Computed {
+    /// Computes what the shaders need to draw a state.
+    pub fn new(body: &Body, frame: &ViewFrame, rows: &Rows, state: &[Vec3A]) -> Self {
+        let displacements = body.binding.displacements(state);
+        let Placed { positions, lift } = placed_by(body, frame, &displacements);
+        let gradients = normals::gradients(&body.complex, state);
+        Self {
+            nodes: view_displacements(body, frame, &displacements, &rows.used, lift),
+            normals: ShaderBuffer::from(rows.normals_in(body, &gradients)),
+            shade: ShaderBuffer::from(contact::shade(&body.boundary.triangles, &positions)),
+            extent: extent_of(body, &positions),
+            lift,
+        }
+    }
+}
+
 impl State {
     /// Whether this is the state of an `Arc`.
     pub fn is_of(&self, state: &Arc<Vec<Vec3A>>) -> bool {
@@ -99,28 +124,14 @@ impl State {
         self.state.strong_count() > 0
     }
 
-    /// Computes what the shaders need to draw a state.
-    pub fn new(
-        body: &Body,
-        frame: &ViewFrame,
-        rows: &Rows,
-        state: &Arc<Vec<Vec3A>>,
-        buffers: &mut Assets<ShaderBuffer>,
-    ) -> Self {
-        let displacements = body.binding.displacements(state);
-        let Placed { positions, lift } = placed_by(body, frame, &displacements);
-        let extent = extent_of(body, &positions);
-        let gradients = normals::gradients(&body.complex, state);
-        let surface = Sheet {
-            nodes: buffers.add(view_displacements(body, frame, &displacements, &rows.used, lift)),
-            normals: buffers.add(ShaderBuffer::from(rows.normals_in(body, &gradients))),
-        };
-        let shade = contact::shade(&body.boundary.triangles, &positions);
+    /// Gives what was computed of a state to the GPU.
+    pub fn new(state: &Arc<Vec<Vec3A>>, computed: Computed, buffers: &mut Assets<ShaderBuffer>) -> Self {
+        let Computed { nodes, normals, shade, extent, lift } = computed;
         Self {
             state: Arc::downgrade(state),
-            surface,
+            surface: Sheet { nodes: buffers.add(nodes), normals: buffers.add(normals) },
             blocks: None,
-            shade: buffers.add(ShaderBuffer::from(shade)),
+            shade: buffers.add(shade),
             extent,
             lift,
         }

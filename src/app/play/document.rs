@@ -9,6 +9,7 @@ use crate::importance::Layer;
 use crate::paint::{Canvas, Painting, Under};
 use crate::scene::{Draft, Scene, Source};
 use crate::schedule::Settings;
+use crate::view::{Picker, RestShape};
 use crate::{Error, Result};
 
 /// A scene that is open.
@@ -21,6 +22,8 @@ pub struct Document {
     pub painting: Painting,
     /// Sentences about what was read.
     pub warnings: Vec<String>,
+    /// The surface at rest, ready to be pointed at, and which surface it is.
+    picking: (Arc<Boundary>, Arc<RestShape>),
     /// Rises with each change of the settings.
     settings_version: u64,
     saved: (u64, u64),
@@ -57,8 +60,10 @@ impl Document {
         let mut warnings = under.boundary.warnings.clone();
         warnings.extend_from_slice(under.stack.warnings());
         let painting = Painting::new(Arc::new(canvas), under, std::mem::take(&mut draft.strokes));
+        let boundary = painting.under().boundary.clone();
+        let picking = (boundary.clone(), Arc::new(RestShape::new(&boundary)));
         let saved = (painting.version(), 0);
-        Ok(Self { draft, file, painting, warnings, settings_version: 0, saved })
+        Ok(Self { draft, file, painting, warnings, picking, settings_version: 0, saved })
     }
 
     /// The scene as it is now, without its strokes: cheap.
@@ -73,6 +78,12 @@ impl Document {
     /// As [`Scene::new`].
     pub fn scene(&self) -> Result<Scene> {
         Scene::new(Draft { strokes: self.painting.edits().to_vec(), ..self.draft() })
+    }
+
+    /// What finds a place under the pointer, for a surface; what was made for it while reading, if it is the same.
+    pub fn picker(&self, boundary: &Arc<Boundary>) -> Picker {
+        let (known, rest) = &self.picking;
+        if Arc::ptr_eq(known, boundary) { Picker::prepared(known, rest.clone()) } else { Picker::default() }
     }
 
     /// Where it comes from.

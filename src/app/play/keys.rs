@@ -4,7 +4,7 @@ use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::prelude::*;
 
 use super::sandbox::Sandbox;
-use crate::panel::{Asked, Tool, Wish};
+use crate::panel::{Asked, Choice, Tool, Wish};
 use crate::view::Axis;
 
 /// Whether a text field has the keyboard.
@@ -53,6 +53,11 @@ fn character_key(sandbox: &mut Sandbox, character: &str, control: bool, shift: b
     let from = |front, back| Wish::LookFrom(if control { back } else { front });
     match (character, control) {
         ("s", true) => sandbox.wishes.push(if shift { Wish::Ask(Asked::SaveScene) } else { Wish::Save }),
+        #[cfg(feature = "record")]
+        ("r", true) => {
+            let title = sandbox.open.as_ref().map_or_else(String::new, |open| open.title());
+            crate::panel::open_record(choice, &title);
+        }
         ("o", true) => sandbox.wishes.push(Wish::Ask(Asked::Open)),
         ("f", false) => sandbox.wishes.push(Wish::Frame),
         ("1", _) => sandbox.wishes.push(from(Axis::Front, Axis::Back)),
@@ -85,14 +90,21 @@ fn named_key(sandbox: &mut Sandbox, key: &Key) {
 
 /// Drops what is nearest at hand: the stroke, a dialog, the solve.
 fn escape(sandbox: &mut Sandbox) {
-    if sandbox.open.as_mut().is_some_and(|open| open.painting.cancel()) {
-    } else if sandbox.choice.help || sandbox.choice.export.is_open || sandbox.choice.gallery {
-        sandbox.choice.help = false;
-        sandbox.choice.gallery = false;
-        sandbox.choice.export.is_open = false;
-    } else if sandbox.problem.is_some() {
+    if sandbox.open.as_mut().is_some_and(|open| open.painting.cancel()) || close_dialogs(&mut sandbox.choice) {
+        return;
+    }
+    if sandbox.problem.is_some() {
         sandbox.problem = None;
     } else {
         sandbox.wishes.push(Wish::Cancel);
     }
+}
+
+/// Whether one was open.
+fn close_dialogs(choice: &mut Choice) -> bool {
+    let was_open = choice.help || choice.export.is_open || choice.gallery;
+    (choice.help, choice.export.is_open, choice.gallery) = (false, false, false);
+    #[cfg(feature = "record")]
+    let was_open = std::mem::take(&mut choice.record.is_open) || was_open;
+    was_open
 }

@@ -7,7 +7,10 @@
 mod bench;
 mod display;
 mod document;
+#[cfg(feature = "record")]
+mod filming;
 mod keys;
+mod marks;
 mod memory;
 mod pointer;
 mod present;
@@ -18,6 +21,8 @@ mod tasks;
 mod window;
 
 pub use document::{Document, Wanted};
+#[cfg(feature = "record")]
+pub use filming::Filming;
 pub use memory::Memory;
 pub use pointer::{PointerOnPanel, Viewport};
 pub use present::{Classic, Shown};

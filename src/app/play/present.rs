@@ -8,10 +8,11 @@ use glam::Vec3A;
 
 use super::pointer::Viewport;
 use super::sandbox::{Look, Sandbox};
-use crate::panel::Compare;
+use crate::boundary::Boundary;
+use crate::panel::{Choice, Compare};
 use crate::session::{Phase, Snapshot};
 use crate::view::{
-    Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe,
+    Body, Extent, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe,
 };
 
 /// The certified body.
@@ -53,7 +54,8 @@ pub(super) fn bodies(
     if is_new {
         shown.iter().for_each(|(entity, _)| commands.entity(entity).despawn());
         let rest = Arc::new(lattice.complex.rest.clone());
-        commands.spawn((Shown, body(), Picker::default(), Rest(rest)));
+        let picker = sandbox.open.as_ref().map_or_else(Picker::default, |open| open.picker(&lattice.boundary));
+        commands.spawn((Shown, body(), picker, Rest(rest)));
     }
     let compares = sandbox.choice.compare != Compare::Off;
     if is_new || !compares {
@@ -68,14 +70,18 @@ pub(super) fn bodies(
         references.iter().for_each(|entity| commands.entity(entity).despawn());
     }
     if shows_sizes && (is_new || references.is_empty()) {
-        let (low, high) = lattice.boundary.bounds().unwrap_or_default();
-        let frame = ViewFrame::of(&lattice.boundary);
-        let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
-        // Beside the feet, before them: there they hide nothing.
-        let row = REFERENCE * (SizeLegend::FACTORS.iter().sum::<f32>() + 3.0);
-        let at = Vec3::new(0.5 * (low.x + high.x) + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1);
-        commands.spawn(SizeLegend { unit: REFERENCE, is_flat: high.z <= low.z, at });
+        commands.spawn(references_of(&lattice.boundary));
     }
+}
+
+/// Beside the feet and before them, where they hide nothing.
+fn references_of(boundary: &Boundary) -> SizeLegend {
+    let (low, high) = boundary.bounds().unwrap_or_default();
+    let frame = ViewFrame::of(boundary);
+    let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
+    let row = REFERENCE * SizeLegend::WIDTH;
+    let at = Vec3::new(0.5 * (low.x + high.x) + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1);
+    SizeLegend { unit: REFERENCE, is_flat: high.z <= low.z, at }
 }
 
 type Posed<'a> = (Entity, Option<&'a Pose>, &'a Rest, &'a mut Placement);
@@ -86,16 +92,25 @@ pub(super) fn poses(
     sandbox: Res<Sandbox>,
     mut shown: Query<Posed, (With<Shown>, Without<Classic>)>,
     mut classic: Query<Posed, (With<Classic>, Without<Shown>)>,
+    orbits: Query<&Orbit>,
+    mut reached: Local<Option<(u64, Extent)>>,
 ) {
     let snapshot = &sandbox.snapshot;
-    let beside = sandbox.choice.compare == Compare::SideBySide;
-    let offset = if beside { 0.62 * width(snapshot) } else { 0.0 };
+    let mut offset = Vec3::ZERO;
+    if sandbox.choice.compare == Compare::SideBySide
+        && let Some(orbit) = orbits.iter().next()
+    {
+        if reached.is_none_or(|(version, _)| version != snapshot.version) {
+            *reached = Some((snapshot.version, reach(snapshot, true)));
+        }
+        offset = reached.map_or(Vec3::ZERO, |(_, extent)| aside(extent, orbit));
+    }
     for (entity, pose, _, mut placement) in &mut shown {
-        placement.set_if_neq(Placement { offset: Vec3::X * offset });
+        placement.set_if_neq(Placement { offset });
         set(&mut commands, entity, pose, certified_pose(&sandbox));
     }
     for (entity, pose, rest, mut placement) in &mut classic {
-        placement.set_if_neq(Placement { offset: Vec3::NEG_X * offset });
+        placement.set_if_neq(Placement { offset: -offset });
         let linear = snapshot.linear.as_ref().filter(|linear| linear.len() == rest.0.len());
         let wanted = linear.map(|linear| Pose {
             from: rest.0.clone(),
@@ -106,11 +121,13 @@ pub(super) fn poses(
     }
 }
 
-/// How wide the boundary is, view units.
-fn width(snapshot: &Snapshot) -> f32 {
-    let Some(lattice) = &snapshot.lattice else { return 1.0 };
-    let (low, high) = lattice.boundary.bounds().unwrap_or_default();
-    ViewFrame::of(&lattice.boundary).world_length((high.x - low.x).max(0.5 * (high.y - low.y)))
+/// Space between two bodies side by side, as a part of their width.
+const GAP: f32 = 0.06;
+
+/// From the middle to the right one of two bodies side by side, as the camera sees them.
+fn aside(Extent { low, high }: Extent, orbit: &Orbit) -> Vec3 {
+    let right = orbit.rotation() * Vec3::X;
+    right * 0.5 * (1.0 + GAP) * (high - low).dot(right.abs())
 }
 
 fn set(commands: &mut Commands, entity: Entity, now: Option<&Pose>, wanted: Option<Pose>) {
@@ -162,6 +179,7 @@ pub(super) fn looks(
     let importance = painted.as_ref().filter(|_| fits).map(|(_, values)| values.clone());
     let choice = &sandbox.choice;
     let lambda = choice.player.lambda();
+    let marked = (choice.compare != Compare::Off).then(|| sandbox.marked()).flatten();
     for (entity, mut looks, has_ghost, is_classic) in &mut shown {
         let voxels = match (choice.mode, &snapshot.importance) {
             (Mode::Voxels(VoxelColour::Growth), Some(importance)) if lambda < 1.0 => {
@@ -172,12 +190,17 @@ pub(super) fn looks(
         };
         let wiped = choice.compare == Compare::Wipe;
         let wanted = Looks {
-            mode: if choice.mode == Mode::Fidelity && snapshot.reached.is_none() { Mode::Plain } else { choice.mode },
+            mode: match choice.mode {
+                Mode::Fidelity if snapshot.reached.is_none() => Mode::Plain,
+                // In grey, on which red tells.
+                Mode::Importance | Mode::Fidelity if is_classic => Mode::Plain,
+                mode => mode,
+            },
             importance: importance.clone(),
             fidelity: snapshot.reached.clone(),
             voxels,
             range: None,
-            marked: None,
+            marked: marked.clone().filter(|_| is_classic),
             wipe: wiped.then_some(Wipe { at: choice.wipe, keeps_left: is_classic }),
         };
         if !same_looks(&looks, &wanted) {
@@ -201,7 +224,12 @@ fn same_looks(a: &Looks, b: &Looks) -> bool {
         (None, None) => true,
         _ => false,
     };
-    a.mode == b.mode
+    let same_marks = match (&a.marked, &b.marked) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    same_marks
+        && a.mode == b.mode
         && a.wipe == b.wipe
         && same(&a.importance, &b.importance)
         && same(&a.fidelity, &b.fidelity)
@@ -234,8 +262,8 @@ pub(super) fn camera(
             match look {
                 Look::From(axis) => wanted.look_from(axis),
                 Look::Frame => {
-                    let [low, high] = bounds(&sandbox.snapshot, sandbox.choice.compare == Compare::SideBySide);
-                    wanted.frame(crate::view::Extent { low, high }, viewport.size.x / viewport.size.y.max(1.0));
+                    let extent = bounds(&sandbox.snapshot, &sandbox.choice, &wanted);
+                    wanted.frame(extent, viewport.size.x / viewport.size.y.max(1.0));
                     // Room for the legend and for what the eye wants around a thing.
                     wanted.distance *= 1.12;
                     *framed = (sandbox.snapshot.phase != Phase::Done).then_some((wanted.target, wanted.distance));
@@ -254,16 +282,28 @@ pub(super) fn camera(
 }
 
 /// The box around what is shown, view space.
-fn bounds(snapshot: &Snapshot, beside: bool) -> [Vec3; 2] {
-    let Some(lattice) = &snapshot.lattice else { return [Vec3::ZERO, Vec3::ONE] };
+fn bounds(snapshot: &Snapshot, choice: &Choice, orbit: &Orbit) -> Extent {
+    let is_beside = choice.compare == Compare::SideBySide;
+    let one = reach(snapshot, is_beside);
+    let aside = if is_beside { aside(one, orbit) } else { Vec3::ZERO };
+    let all = one.moved(aside).union(one.moved(-aside));
+    match &snapshot.lattice {
+        Some(lattice) if choice.size_legend => all.union(references_of(&lattice.boundary).extent()),
+        _ => all,
+    }
+}
+
+/// The box around the body at rest and grown, with Eq. 1's solution if that is shown too; view space.
+fn reach(snapshot: &Snapshot, with_linear: bool) -> Extent {
+    let Some(lattice) = &snapshot.lattice else { return Extent { low: Vec3::ZERO, high: Vec3::ONE } };
     let frame = ViewFrame::of(&lattice.boundary);
     let (mut low, mut high) = lattice.boundary.bounds().unwrap_or_default();
     let is_flat = high.z <= low.z;
-    let last = snapshot.film.last().map(|state| &state.positions).or(snapshot.linear.as_ref());
-    if let Some(state) = last.filter(|state| state.len() == lattice.complex.nodes()) {
-        let h = lattice.complex.grid;
+    let last = snapshot.film.last().map(|state| &state.positions);
+    let linear = snapshot.linear.as_ref().filter(|_| with_linear || last.is_none());
+    for state in last.into_iter().chain(linear).filter(|state| state.len() == lattice.complex.nodes()) {
         for p in state.iter() {
-            let p = h.source_from_lattice(p.as_dvec3());
+            let p = lattice.complex.grid.source_from_lattice(p.as_dvec3());
             (low, high) = (low.min(p), high.max(p));
         }
     }
@@ -272,9 +312,5 @@ fn bounds(snapshot: &Snapshot, beside: bool) -> [Vec3; 2] {
         // What has grown downwards is lifted onto the floor.
         (low.y, high.y) = (0.0, high.y - low.y);
     }
-    if beside {
-        let offset = 0.62 * width(snapshot);
-        (low.x, high.x) = (low.x - offset, high.x + offset);
-    }
-    [low, high]
+    Extent { low, high }
 }

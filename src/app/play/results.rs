@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use crate::boundary::Boundary;
 use crate::export::report::{self, Report};
@@ -27,17 +26,13 @@ pub(super) struct Order {
     pub warnings: Vec<String>,
     pub choice: Choice,
     pub seen_from: Orbit,
-    /// Set when it is to stop.
-    pub stop: Arc<AtomicBool>,
 }
 
 /// Writes it; where.
 pub(super) fn write(order: &Order) -> Result<PathBuf> {
     let Order { boundary, outcome, path, .. } = order;
     let export = &order.choice.export;
-    if order.scene.files().iter().any(|file| is_same(file, path)) {
-        return Err(Error::in_file(path, "it is an input of this scene; give the result another name"));
-    }
+    order.check()?;
     let colours = importance::colours(&outcome.importance);
     let colours = |wanted: bool| wanted.then_some(colours.as_slice());
     match order.asked {
@@ -51,8 +46,6 @@ pub(super) fn write(order: &Order) -> Result<PathBuf> {
             export::growth(boundary, &frames, colours(export.colour_growth), export.seconds, path)?;
         }
         Asked::ExportReport => report::write(&order.report(), path)?,
-        #[cfg(feature = "record")]
-        Asked::ExportFilm => film::write(order)?,
         _ => return Err(Error::in_file(path, "this program was built without what writes it")),
     }
     Ok(path.clone())
@@ -63,93 +56,19 @@ fn is_same(a: &Path, b: &Path) -> bool {
 }
 
 impl Order {
-    fn report(&self) -> Report {
+    /// Whether it may be written there.
+    pub fn check(&self) -> Result<()> {
+        let Self { scene, path, .. } = self;
+        if scene.files().iter().any(|file| is_same(file, path)) {
+            return Err(Error::in_file(path, "it is an input of this scene; give the result another name"));
+        }
+        Ok(())
+    }
+
+    pub fn report(&self) -> Report {
         let scene = &self.scene;
         let settings =
             Settings { resolution: scene.resolution, fidelity: scene.fidelity, keys: scene.keys, reference: None };
         Report::of(scene, &settings, self.stack.clamped(), &self.outcome, self.warnings.clone())
-    }
-}
-
-/// The film as the view shows it.
-#[cfg(feature = "record")]
-mod film {
-    use std::sync::atomic::Ordering;
-
-    use super::Order;
-    use crate::collision::Shell;
-    use crate::film::{Film, Keyframe};
-    use crate::panel::{Compare, Easing, Repeat};
-    use crate::record::{self, Camera, Draft, Ease, Settings, Subject, View};
-    use crate::schedule::{Observer, Outcome, Progress, Solved};
-    use crate::view::Mode;
-    use crate::{Error, Result};
-
-    /// Stops a film.
-    struct Stop<'a>(&'a Order);
-
-    impl Observer for Stop<'_> {
-        fn progress(&self, _: &Progress) {}
-
-        fn cancelled(&self) -> bool {
-            self.0.stop.load(Ordering::Relaxed)
-        }
-    }
-
-    pub(super) fn write(order: &Order) -> Result<()> {
-        let settings = settings(order)?;
-        let (mut subject, _) = Subject::new(order.boundary.clone(), solved(order)?);
-        let take = record::shoot(&mut subject, &settings, &order.path, &Stop(order), |_| {})?;
-        let beside = serde_json::json!({
-            "film": order.path.file_name().map(|name| name.to_string_lossy()),
-            "version": env!("CARGO_PKG_VERSION"),
-            "seed": null,
-            "scene": &*order.scene,
-            "recording": &take.account,
-            "report": order.report(),
-        });
-        take.keep(&beside).map(drop)
-    }
-
-    fn settings(order: &Order) -> Result<Settings> {
-        let (choice, from) = (&order.choice, &order.seen_from);
-        let [width, height] = choice.export.film_size;
-        let turn = from.yaw.to_degrees().rem_euclid(360.0);
-        Settings::new(Draft {
-            seconds: choice.export.film_seconds.into(),
-            width,
-            height,
-            ease: if choice.player.easing == Easing::Linear { Ease::Linear } else { Ease::InOut },
-            ping_pong: choice.player.repeat == Repeat::PingPong,
-            turntable: if choice.turntable { 1.0 } else { 0.0 },
-            camera: Camera { yaw: turn, pitch: from.pitch.to_degrees().clamp(-89.0, 89.0), zoom: 1.0 },
-            view: match (choice.compare, choice.mode) {
-                (Compare::SideBySide | Compare::Wipe, _) => View::Compare,
-                (_, Mode::Voxels(_)) => View::Voxels,
-                (_, Mode::Plain) => View::Plain,
-                _ => View::Importance,
-            },
-            legend: choice.export.film_legend,
-            ..Draft::default()
-        })
-    }
-
-    /// The session's result as the recorder takes it.
-    fn solved(order: &Order) -> Result<Solved> {
-        let snapshot = &order.snapshot;
-        let parts = snapshot.lattice.as_ref().zip(snapshot.linear.as_ref()).zip(snapshot.importance.as_ref());
-        let Some(((lattice, linear), importance)) = parts else {
-            return Err(Error::Fault("a solve that is done lacks its lattice".into()));
-        };
-        let (complex, binding) = (lattice.complex.clone(), lattice.binding.clone());
-        let shells = vec![Shell::skin(&complex), Shell::boundary(&order.boundary, (*binding).clone(), &complex)];
-        let mut film = Film::default();
-        for state in &snapshot.film {
-            let (positions, certificate) = ((*state.positions).clone(), state.certificate.clone());
-            film.push(Keyframe { lambda: state.lambda, positions, certificate, way_is_clear: false });
-        }
-        let (linear, importance) = ((**linear).clone(), (**importance).clone());
-        let (boundary, outcome) = (order.boundary.clone(), Outcome::clone(&order.outcome));
-        Ok(Solved { boundary, complex, binding, shells, film, linear, importance, outcome })
     }
 }

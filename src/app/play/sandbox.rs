@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::prelude::Resource;
 use glam::DVec3;
 
 use super::document::{Document, Dropped, Wanted, recognise, under};
+use super::marks::{Faulty, Marks};
 use super::memory::{Memory, keep};
 use super::results;
 use super::tasks::{Done, Tasks};
 use crate::boundary::Boundary;
 use crate::importance::Layer;
-use crate::panel::{Asked, Choice, Wish};
+use crate::panel::{Asked, Choice, Compare, Wish};
 use crate::scene::{Draft, Source};
 use crate::session::{Session, Snapshot, Subject};
 use crate::view::{Axis, Orbit};
@@ -40,10 +40,14 @@ pub struct Sandbox {
     pub memory: Memory,
     /// From where the view is seen.
     pub seen_from: Orbit,
-    /// Set when films that are being written are to stop.
-    stop: Arc<AtomicBool>,
+    /// The film that is being recorded.
+    #[cfg(feature = "record")]
+    pub filming: Option<super::Filming>,
+    /// One line about the film that was recorded last.
+    pub filmed: Option<String>,
     session: Session,
     tasks: Tasks,
+    marks: Marks,
     /// What the solver was told last.
     told: Option<Told>,
     kept: (u64, u64),
@@ -83,9 +87,12 @@ impl Sandbox {
             screenshots: Vec::new(),
             memory: Memory::open(memory),
             seen_from: Orbit::default(),
-            stop: Arc::default(),
+            #[cfg(feature = "record")]
+            filming: None,
+            filmed: None,
             session: Session::start()?,
             tasks: Tasks::default(),
+            marks: Marks::default(),
             told: None,
             kept: (0, 0),
             failure_seen: 0,
@@ -122,12 +129,30 @@ impl Sandbox {
         if snapshot.version != self.snapshot.version {
             self.snapshot = snapshot;
         }
+        self.mark();
         if let Some(error) = &self.snapshot.error
             && self.failure_seen != self.snapshot.version
         {
             self.problem = Some(error.clone());
             self.failure_seen = self.snapshot.version;
         }
+    }
+
+    /// Looks for what is to be marked in Eq. 1's solution, where it is shown.
+    fn mark(&mut self) {
+        let is_painting = self.open.as_ref().is_some_and(|open| open.painting.is_painting());
+        let Some((lattice, linear)) = self.snapshot.lattice.as_ref().zip(self.snapshot.linear.as_ref()) else { return };
+        if self.choice.compare == Compare::Off || is_painting {
+            return;
+        }
+        if let Some(search) = self.marks.wanted(lattice, linear, self.choice.player.lambda()) {
+            self.tasks.start_quietly(move || Done::Marked(Box::new(search.run())));
+        }
+    }
+
+    /// Triangles to be marked in Eq. 1's solution at the λ that is shown, as far as they are known.
+    pub fn marked(&self) -> Option<Faulty> {
+        self.marks.at(self.snapshot.linear.as_ref(), self.choice.player.lambda())
     }
 
     /// Tells the solver what has been painted since.
@@ -169,7 +194,24 @@ impl Sandbox {
                 }
             }),
             Done::Written(path) => path.map(|_| ()),
+            #[cfg(feature = "record")]
+            Done::Filmed(film) => {
+                self.filming = None;
+                match film {
+                    Ok((path, certified)) => {
+                        self.filmed = Some(super::filming::told(&path, certified));
+                        Ok(())
+                    }
+                    // Whoever stopped it knows.
+                    Err(Error::Cancelled) => Ok(()),
+                    Err(error) => Err(error),
+                }
+            }
             Done::Kept(done) | Done::Pictured(done) => done,
+            Done::Marked(found) => {
+                self.marks.take(*found);
+                Ok(())
+            }
         };
         if let Err(error) = result {
             self.problem = Some(error.to_string());
@@ -202,6 +244,11 @@ impl Sandbox {
                 per_area: false,
             })),
             (Asked::Regions, [_]) => Ok(()),
+            #[cfg(feature = "record")]
+            (Asked::ExportFilm, [path, ..]) => {
+                self.choice.record.name = path.display().to_string();
+                Ok(())
+            }
             (Asked::SaveScene, [path, ..]) => self.fulfil(Wish::SaveTo(path.clone())),
             (_, [path, ..]) => self.fulfil(Wish::Export(asked, path.clone())),
         }
@@ -222,6 +269,8 @@ impl Sandbox {
                 None => {}
             },
             Wish::SaveTo(path) => return self.save(path),
+            #[cfg(feature = "record")]
+            Wish::Export(Asked::ExportFilm, path) => return self.record(path),
             Wish::Export(asked, path) => return self.export(asked, path),
             Wish::AddLayer(layer) => return self.layers("reading the layer", |draft| draft.layers.push(layer)),
             Wish::RemoveLayer(index) => return self.layers("reading the layers", |draft| remove(draft, index)),
@@ -244,10 +293,13 @@ impl Sandbox {
             Wish::SetResolution(resolution) => return self.set(|draft| draft.resolution = resolution),
             Wish::SetFidelity(fidelity) => return self.set(|draft| draft.fidelity = fidelity),
             Wish::SetKeys(keys) => return self.set(|draft| draft.keys = keys),
-            Wish::Cancel => {
-                self.session.cancel();
-                // Those that run keep the old one, which is set; later ones get a new one.
-                std::mem::take(&mut self.stop).store(true, Ordering::Relaxed);
+            Wish::Cancel => self.session.cancel(),
+            Wish::StopFilm =>
+            {
+                #[cfg(feature = "record")]
+                if let Some(filming) = &self.filming {
+                    filming.stop();
+                }
             }
             Wish::Resume => self.session.resume(),
             Wish::Frame => self.looks.push(Look::Frame),
@@ -313,10 +365,31 @@ impl Sandbox {
     }
 
     fn export(&mut self, asked: Asked, path: PathBuf) -> Result<()> {
+        let order = self.order(asked, path)?;
+        self.tasks.start(format!("writing {}", order.path.display()), move || Done::Written(results::write(&order)));
+        Ok(())
+    }
+
+    /// Records a film; one at a time.
+    #[cfg(feature = "record")]
+    fn record(&mut self, path: PathBuf) -> Result<()> {
+        if let Some(filming) = &self.filming {
+            let sentence = format!("{} is being recorded; wait for its end or cancel it", filming.path.display());
+            return Err(Error::input(sentence));
+        }
+        let order = self.order(Asked::ExportFilm, path)?;
+        let (filming, shooting) = super::Filming::begin(order, &self.choice.record.draft)?;
+        (self.filming, self.filmed) = (Some(filming), None);
+        self.tasks.start_quietly(move || Done::Filmed(shooting.run()));
+        Ok(())
+    }
+
+    /// What is to be written, of all that is there now.
+    fn order(&self, asked: Asked, path: PathBuf) -> Result<results::Order> {
         let (Some(open), Some(outcome)) = (&self.open, &self.snapshot.outcome) else {
             return Err(Error::input("there is nothing to export yet; wait until the solver is done"));
         };
-        let order = results::Order {
+        Ok(results::Order {
             asked,
             path,
             scene: open.scene()?,
@@ -327,10 +400,7 @@ impl Sandbox {
             warnings: open.warnings.clone(),
             choice: self.choice.clone(),
             seen_from: self.seen_from,
-            stop: self.stop.clone(),
-        };
-        self.tasks.start(format!("writing {}", order.path.display()), move || Done::Written(results::write(&order)));
-        Ok(())
+        })
     }
 
     fn proposed_name(&self, asked: Asked) -> String {
@@ -353,6 +423,10 @@ impl Sandbox {
 
     /// The program is being closed: unsaved work stays to be restored, what is saved leaves nothing behind.
     pub(super) fn close(&self) {
+        #[cfg(feature = "record")]
+        if let Some(filming) = &self.filming {
+            filming.stop_and_wait();
+        }
         match (&self.open, self.memory.autosave()) {
             (Some(open), Some(path)) if open.is_changed() && !self.memory.can_restore() => {
                 // Nobody is there any more to be told.

@@ -2,15 +2,16 @@
 //! and looks.
 //!
 //! ```text
-//! wait done                 until the solver is done (or `lattice`, `idle`: nothing is read or written)
+//! wait done                 until the solver is done (or `lattice`, `idle`: nothing is read or written, `preview`: of a film)
 //! frames 3                  so many frames
 //! move 640 360              the pointer, logical pixels; `drag 600 300 680 300 8 left` presses, moves in steps, lets go
 //! wheel 2                   clicks away from the user
 //! key z ctrl shift          `z`, `[`, `space`, `left`, `escape`, `f12`, …
 //! open body.obj             as if dropped; `save s.ron`, `mesh out.glb`, `growth out.glb`, `report out.json`
-//! mode fidelity             `plain`, `importance`, `voxels`; `show ghost|sizes|beside|wipe|help|gallery|export` toggles
+//! film out.mp4 160 90 1 10  records: width, height, seconds, frames a second; `wait film` until it is there
+//! mode fidelity             `plain`, `importance`, `voxels`; `show ghost|sizes|beside|wipe|help|gallery|export|record` toggles
 //! shot a.png                a picture of the window
-//! expect problem TEXT       or `expect strokes 2`, `expect lambda 0.5`, `expect calm`; the program ends with an error if not
+//! expect problem TEXT       or `expect strokes 2`, `expect lambda 0.5`, `expect wipe 0.4`, `expect calm`; the program ends with an error if not
 //! resize 1920 1080
 //! quit
 //! ```
@@ -23,13 +24,13 @@ use bevy::input::ButtonState;
 use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::input::mouse::{MouseButtonInput, MouseScrollUnit, MouseWheel};
 use bevy::prelude::*;
-use bevy::window::{CursorMoved, PrimaryWindow};
+use bevy::window::{CursorMoved, PrimaryWindow, WindowEvent};
 
 use super::sandbox::Sandbox;
 use crate::app::note;
 use crate::panel::{Asked, Compare, Wish};
 use crate::session::Phase;
-use crate::view::{Mode, VoxelColour};
+use crate::view::{Mode, Unhurried, VoxelColour};
 use crate::{Error, Result};
 
 /// Longest wait for anything.
@@ -114,6 +115,12 @@ impl Stage<'_> {
         self.world.resource_mut::<Sandbox>()
     }
 
+    /// As the window would: once by its kind, for the view, and once among all its events, for the panels.
+    fn send<M: Message + Clone + Into<WindowEvent>>(&mut self, message: M) {
+        self.world.write_message(message.clone());
+        self.world.write_message(message.into());
+    }
+
     fn perform(&mut self, script: &mut Script, line: &str) -> Result<Next, String> {
         let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
         let words: Vec<&str> = rest.split_whitespace().collect();
@@ -138,6 +145,8 @@ impl Stage<'_> {
             "mesh" => self.sandbox().wishes.push(Wish::Export(Asked::ExportMesh, rest.into())),
             "growth" => self.sandbox().wishes.push(Wish::Export(Asked::ExportGrowth, rest.into())),
             "report" => self.sandbox().wishes.push(Wish::Export(Asked::ExportReport, rest.into())),
+            #[cfg(feature = "record")]
+            "film" => self.film(&words, &number)?,
             "shot" => self.sandbox().screenshots.push(rest.into()),
             "mode" => self.sandbox().choice.mode = mode(rest)?,
             "show" => self.show(rest)?,
@@ -159,19 +168,24 @@ impl Stage<'_> {
     }
 
     fn has_come(&mut self, what: &str) -> Result<bool, String> {
+        let is_waiting = self.world.get_resource::<Unhurried>().is_some_and(|unhurried| unhurried.is_waiting);
         let sandbox = self.world.resource::<Sandbox>();
         Ok(match what {
-            "done" => sandbox.snapshot.phase == Phase::Done && !sandbox.awaits(),
+            "done" => sandbox.snapshot.phase == Phase::Done && !sandbox.awaits() && !is_waiting,
             "lattice" => sandbox.snapshot.lattice.is_some(),
             "busy" => sandbox.snapshot.phase.is_busy(),
             "idle" => sandbox.busy().is_none() && sandbox.wishes.is_empty(),
-            _ => return Err("wait for done, lattice, busy or idle".into()),
+            #[cfg(feature = "record")]
+            "preview" => sandbox.filming.as_ref().is_some_and(|film| film.preview().is_some()),
+            #[cfg(feature = "record")]
+            "film" => sandbox.filming.is_none() && sandbox.wishes.is_empty(),
+            _ => return Err("wait for done, lattice, busy, idle, preview or film".into()),
         })
     }
 
     fn move_to(&mut self, script: &mut Script, position: Vec2) {
         script.pointer = position;
-        self.world.write_message(CursorMoved { window: self.window, position, delta: None });
+        self.send(CursorMoved { window: self.window, position, delta: None });
     }
 
     fn button(&mut self, pressed: bool, name: Option<&str>) {
@@ -181,7 +195,7 @@ impl Stage<'_> {
             _ => MouseButton::Left,
         };
         let state = if pressed { ButtonState::Pressed } else { ButtonState::Released };
-        self.world.write_message(MouseButtonInput { button, state, window: self.window });
+        self.send(MouseButtonInput { button, state, window: self.window });
     }
 
     /// Becomes moves with a press before and a release after, two frames each: panels need one to see the pointer come.
@@ -204,7 +218,7 @@ impl Stage<'_> {
     }
 
     fn wheel(&mut self, y: f32) {
-        self.world.write_message(MouseWheel {
+        self.send(MouseWheel {
             unit: MouseScrollUnit::Line,
             x: 0.0,
             y,
@@ -242,7 +256,7 @@ impl Stage<'_> {
     }
 
     fn write_key(&mut self, key_code: KeyCode, key: &Key, state: ButtonState) {
-        self.world.write_message(KeyboardInput {
+        self.send(KeyboardInput {
             key_code,
             logical_key: key.clone(),
             state,
@@ -261,10 +275,27 @@ impl Stage<'_> {
             "help" => choice.help = !choice.help,
             "gallery" => choice.gallery = !choice.gallery,
             "export" => choice.export.is_open = !choice.export.is_open,
+            #[cfg(feature = "record")]
+            "record" if choice.record.is_open => choice.record.is_open = false,
+            #[cfg(feature = "record")]
+            "record" => crate::panel::open_record(choice, "hand.ron"),
             "beside" => choice.compare = toggled(choice.compare, Compare::SideBySide),
             "wipe" => choice.compare = toggled(choice.compare, Compare::Wipe),
-            _ => return Err("show ghost, sizes, help, gallery, export, beside or wipe".into()),
+            _ => return Err("show ghost, sizes, help, gallery, export, record, beside or wipe".into()),
         }
+        Ok(())
+    }
+
+    /// Records a film with the settings of the dialog, small.
+    #[cfg(feature = "record")]
+    fn film(&mut self, words: &[&str], number: &dyn Fn(usize) -> Result<f32, String>) -> Result<(), String> {
+        let path = words.first().ok_or("record to where?")?;
+        let (width, height, seconds, fps) = (number(1)?, number(2)?, number(3)?, number(4)?);
+        let mut sandbox = self.sandbox();
+        let draft = &mut sandbox.choice.record.draft;
+        (draft.width, draft.height) = (width as u32, height as u32);
+        (draft.seconds, draft.fps, draft.hold) = (seconds.into(), fps as u32, 0.0);
+        sandbox.wishes.push(Wish::Export(Asked::ExportFilm, path.into()));
         Ok(())
     }
 
@@ -280,6 +311,10 @@ impl Stage<'_> {
             "lambda" => {
                 let wanted: f32 = value.parse().map_err(|_| "expect lambda NUMBER")?;
                 (sandbox.choice.player.lambda() - wanted).abs() < 1e-3
+            }
+            "wipe" => {
+                let wanted: f32 = value.parse().map_err(|_| "expect wipe NUMBER")?;
+                (sandbox.choice.wipe - wanted).abs() < 0.02
             }
             _ => return Err("no such expectation".into()),
         };

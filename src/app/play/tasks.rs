@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use std::sync::mpsc;
 
 use super::document::Document;
+use super::marks::Found;
 use crate::paint::Under;
 use crate::panel::Asked;
 use crate::{Error, Result};
@@ -21,10 +22,15 @@ pub(super) enum Done {
     Saved(Result<(PathBuf, (u64, u64))>),
     /// Something was written.
     Written(Result<PathBuf>),
+    /// A film was recorded, and whether all it shows is certified.
+    #[cfg(feature = "record")]
+    Filmed(Result<(PathBuf, bool)>),
     /// A copy for the case of a crash was written.
     Kept(Result<()>),
     /// A picture of the window was written.
     Pictured(Result<()>),
+    /// What crosses in Eq. 1's solution was found.
+    Marked(Box<Found>),
 }
 
 /// Tasks that run.
@@ -83,7 +89,9 @@ impl Tasks {
         for result in &done {
             match result {
                 Done::Chosen(..) => self.has_dialog = false,
-                Done::Kept(_) | Done::Pictured(_) => self.quiet = self.quiet.saturating_sub(1),
+                Done::Kept(_) | Done::Pictured(_) | Done::Marked(_) => self.quiet = self.quiet.saturating_sub(1),
+                #[cfg(feature = "record")]
+                Done::Filmed(_) => self.quiet = self.quiet.saturating_sub(1),
                 // Tasks of one kind end in the order they began, near enough for a line of text.
                 Done::Opened(_) | Done::Layers(_) | Done::Saved(_) | Done::Written(_) => {
                     if !self.running.is_empty() {
@@ -135,6 +143,9 @@ fn choose(asked: Asked, proposed: &str) -> Vec<PathBuf> {
         Asked::ExportMesh => to(dialog.set_title("Save the warped mesh"), "Mesh", &crate::panel::MESH_FORMATS),
         Asked::ExportGrowth => to(dialog.set_title("Save the growth"), "glTF", &["glb"]),
         Asked::ExportReport => to(dialog.set_title("Save the report"), "Report", &["json"]),
-        Asked::ExportFilm => to(dialog.set_title("Save the film"), "Film", &["mp4", "gif"]),
+        Asked::ExportFilm => {
+            let formats = ["mp4", "gif", "apng", "webm", "mov", "mkv", "webp"];
+            to(dialog.set_title("Where to record the film"), "Film", &formats)
+        }
     }
 }

@@ -20,7 +20,7 @@ use super::present::Shown;
 use super::sandbox::Sandbox;
 use crate::panel::{self, Facts, theme};
 use crate::session::Snapshot;
-use crate::view::{Legend, Looks, Orbit, Quality, ViewPlugin};
+use crate::view::{Legend, Looks, Orbit, Quality, SizeLegend, Unhurried, ViewPlugin};
 
 /// Bevy, the view, and what a window adds to the sandbox. `unbound` frames come as fast as they can.
 pub(super) fn build(app: &mut App, size: [u32; 2], quality: Quality, unbound: bool) {
@@ -41,6 +41,7 @@ pub(super) fn build(app: &mut App, size: [u32; 2], quality: Quality, unbound: bo
         WindowPluginOfPlay,
     ))
     .insert_resource(quality)
+    .init_resource::<Unhurried>()
     .add_plugins(ViewPlugin);
     if unbound {
         app.insert_resource(WinitSettings {
@@ -94,8 +95,10 @@ fn panels(
     mut on_panel: ResMut<PointerOnPanel>,
     mut keys_on_panel: ResMut<KeysOnPanel>,
     looks: Query<Ref<Looks>, With<Shown>>,
+    references: Query<&SizeLegend>,
     mut legend: Local<Option<Legend>>,
     mut themed: Local<bool>,
+    #[cfg(feature = "record")] mut preview: Local<preview::Preview>,
 ) -> Result {
     let context = contexts.ctx_mut()?;
     if !std::mem::replace(&mut *themed, true) {
@@ -106,6 +109,9 @@ fn panels(
         Ok(_) => {}
         Err(_) => *legend = None,
     }
+    #[cfg(feature = "record")]
+    let filming = preview.follow(context, sandbox.filming.as_ref());
+    let sizes = references.iter().flat_map(|sizes| named(sizes, &sandbox.seen_from, &viewport)).collect();
     let mut choice = sandbox.choice.clone();
     let mut wishes = Vec::new();
     let mut root = egui::Ui::new(
@@ -128,7 +134,10 @@ fn panels(
         problem: sandbox.problem.as_deref(),
         warnings: sandbox.open.as_ref().map_or(&[], |open| &open.warnings),
         can_restore: sandbox.memory.can_restore(),
-        can_record: cfg!(feature = "record"),
+        #[cfg(feature = "record")]
+        filming: sandbox.filming.as_ref().map(|film| preview::facts(film, filming)),
+        filmed: sandbox.filmed.as_deref(),
+        sizes,
     };
     let middle = panel::draw(&mut root, &facts, &mut choice, &mut wishes);
     if sandbox.choice != choice {
@@ -146,6 +155,13 @@ fn panels(
     on_panel.set_if_neq(PointerOnPanel(is_over || context.egui_is_using_pointer()));
     keys_on_panel.set_if_neq(KeysOnPanel(context.text_edit_focused()));
     Ok(())
+}
+
+/// Where the names of reference shapes go, points of the window.
+fn named(sizes: &SizeLegend, from: &Orbit, viewport: &Viewport) -> Vec<(egui::Pos2, &'static str)> {
+    let seen = sizes.labels().into_iter().filter_map(|(at, name)| Some((from.seen(at)?, name)));
+    let place = |at: Vec2| viewport.min + 0.5 * viewport.size + at * viewport.size.y;
+    seen.map(|(at, name)| (place(at), name)).map(|(at, name)| (egui::pos2(at.x, at.y), name)).collect()
 }
 
 /// Gives the view's camera the middle.
@@ -225,10 +241,14 @@ fn rhythm(
     mut awake: Local<Option<Instant>>,
     mut seen: Local<Option<(u64, Option<u64>)>>,
     buttons: Res<ButtonInput<MouseButton>>,
+    unhurried: Res<Unhurried>,
 ) {
     let Snapshot { version, .. } = *sandbox.snapshot;
     let now = (version, sandbox.open.as_ref().map(|open| open.painting.version()));
-    let moves = sandbox.choice.player.is_playing || sandbox.choice.turntable || buttons.get_pressed().next().is_some();
+    let moves = unhurried.is_waiting
+        || sandbox.choice.player.is_playing
+        || sandbox.choice.turntable
+        || buttons.get_pressed().next().is_some();
     if moves || *seen != Some(now) {
         *awake = Some(Instant::now());
         *seen = Some(now);
@@ -241,5 +261,52 @@ fn rhythm(
     };
     if settings.focused_mode != mode {
         *settings = WinitSettings { focused_mode: mode, unfocused_mode: mode };
+    }
+}
+
+/// The last frame of a film that is being recorded, as a picture panels can show.
+#[cfg(feature = "record")]
+mod preview {
+    use std::sync::Arc;
+
+    use bevy_egui::egui;
+    use image::RgbaImage;
+
+    use super::super::Filming;
+    use crate::panel::FilmFacts;
+
+    /// What is shown, if anything, and of which frame.
+    #[derive(Default)]
+    pub(super) struct Preview {
+        frame: Option<Arc<RgbaImage>>,
+        texture: Option<egui::TextureHandle>,
+    }
+
+    /// A texture and its size, pixels.
+    type Shown = Option<(egui::TextureId, egui::Vec2)>;
+
+    impl Preview {
+        /// Brings the picture up to date; without a film it goes.
+        pub(super) fn follow(&mut self, context: &egui::Context, filming: Option<&Filming>) -> Shown {
+            let Some(frame) = filming.and_then(Filming::preview) else {
+                *self = Self::default();
+                return None;
+            };
+            if !self.frame.as_ref().is_some_and(|shown| Arc::ptr_eq(shown, &frame)) {
+                let size = [frame.width() as usize, frame.height() as usize];
+                let picture = egui::ColorImage::from_rgba_unmultiplied(size, frame.as_raw());
+                match &mut self.texture {
+                    Some(texture) => texture.set(picture, egui::TextureOptions::LINEAR),
+                    None => self.texture = Some(context.load_texture("film", picture, egui::TextureOptions::LINEAR)),
+                }
+                self.frame = Some(frame);
+            }
+            self.texture.as_ref().map(|texture| (texture.id(), texture.size_vec2()))
+        }
+    }
+
+    /// What panels are told.
+    pub(super) fn facts(film: &Filming, preview: Shown) -> FilmFacts<'_> {
+        FilmFacts { path: &film.path, drawn: film.drawn(), frames: film.frames, left: film.left(), preview }
     }
 }

@@ -1,179 +1,30 @@
 //! Contract of the sandbox: pointer and keys do what the help says, importance changes where it is painted, what is saved
-//! comes back, an error leaves what was open as it was. First without a window, by Bevy's own input messages; then, where
-//! there is Xvfb and a Vulkan driver, the real window, looked at.
+//! comes back, an error leaves what was open as it was. All of it without a window, by Bevy's own input messages; the real
+//! window is looked at in `screens`.
 #![cfg(feature = "window")]
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
+mod comparing;
+#[cfg(feature = "record")]
+mod filming;
+mod painting;
+mod stage;
+
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use bevy::input::keyboard::{Key, KeyboardInput};
-use bevy::input::mouse::{MouseButtonInput, MouseScrollUnit, MouseWheel};
-use bevy::input::{ButtonState, InputPlugin};
+use bevy::input::ButtonState;
+use bevy::input::keyboard::Key;
 use bevy::prelude::*;
-use bevy::time::TimeUpdateStrategy;
-use bevy::window::{CursorMoved, FileDragAndDrop, PrimaryWindow, WindowPlugin};
+use bevy::window::FileDragAndDrop;
 use glam::DVec3;
-use homunculus::app::play::{PlayPlugin, PointerOnPanel, Sandbox, Shown};
-use homunculus::panel::{Asked, Compare, Tool, Wish};
-use homunculus::scene::{Draft, Scene, Source};
+use homunculus::app::play::{PointerOnPanel, Sandbox};
+use homunculus::panel::{Asked, Tool, Wish};
+use homunculus::scene::Source;
 use homunculus::session::Phase;
-use homunculus::view::{Orbit, Pose};
-
-/// Longest wait for anything here; a fault, not a slow machine, is what reaches it.
-const PATIENCE: Duration = Duration::from_secs(240);
-
-/// The sandbox without a window.
-struct Stage {
-    app: App,
-    window: Entity,
-    folder: tempfile::TempDir,
-}
-
-impl Stage {
-    fn empty() -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let mut app = App::new();
-        app.add_plugins((MinimalPlugins, InputPlugin, WindowPlugin::default()))
-            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)))
-            .insert_resource(Sandbox::new(Some(folder.path().join("memory"))).unwrap())
-            .add_plugins(PlayPlugin);
-        app.finish();
-        app.cleanup();
-        app.update();
-        let window = app.world_mut().query_filtered::<Entity, With<PrimaryWindow>>().single(app.world()).unwrap();
-        Self { app, window, folder }
-    }
-
-    /// The hand at a low resolution, its lattice there.
-    fn hand() -> Self {
-        let mut stage = Self::empty();
-        let path = stage.path("hand.ron");
-        let mut draft = Draft::of(Source::Gallery("hand".into()));
-        (draft.resolution, draft.keys) = (20, 4);
-        Scene::new(draft).unwrap().save(&path).unwrap();
-        stage.wish(Wish::OpenPath(path));
-        stage.wait("the lattice", |s| s.open.is_some() && s.snapshot.lattice.is_some());
-        stage.app.update();
-        stage
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn sandbox(&mut self) -> Mut<'_, Sandbox> {
-        self.app.world_mut().resource_mut::<Sandbox>()
-    }
-
-    fn wish(&mut self, wish: Wish) {
-        self.sandbox().wishes.push(wish);
-        self.app.update();
-    }
-
-    fn wait(&mut self, what: &str, until: impl Fn(&Sandbox) -> bool) {
-        let start = Instant::now();
-        while !until(&self.sandbox()) {
-            assert!(start.elapsed() < PATIENCE, "{what} did not come: {:?}", self.sandbox().problem);
-            self.app.update();
-            std::thread::sleep(Duration::from_millis(2));
-        }
-    }
-
-    fn solved(&mut self) {
-        self.wait("the end of the solve", |s| s.snapshot.phase == Phase::Done && !s.awaits());
-        self.app.update();
-    }
-
-    fn calm(&mut self) {
-        self.wait("the end of the tasks", |s| s.busy().is_none() && s.wishes.is_empty());
-        self.app.update();
-    }
-
-    fn move_to(&mut self, x: f32, y: f32) {
-        let moved = CursorMoved { window: self.window, position: Vec2::new(x, y), delta: None };
-        self.app.world_mut().write_message(moved);
-        self.app.update();
-    }
-
-    fn button(&mut self, button: MouseButton, state: ButtonState) {
-        self.app.world_mut().write_message(MouseButtonInput { button, state, window: self.window });
-        self.app.update();
-    }
-
-    fn drag(&mut self, button: MouseButton, from: [f32; 2], to: [f32; 2]) {
-        self.move_to(from[0], from[1]);
-        self.button(button, ButtonState::Pressed);
-        for k in 1..=6 {
-            let t = k as f32 / 6.0;
-            self.move_to(from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1]));
-        }
-        self.button(button, ButtonState::Released);
-    }
-
-    fn wheel(&mut self, y: f32) {
-        let unit = MouseScrollUnit::Line;
-        let phase = bevy::input::touch::TouchPhase::Moved;
-        self.app.world_mut().write_message(MouseWheel { unit, x: 0.0, y, window: self.window, phase });
-        self.app.update();
-    }
-
-    fn write_key(&mut self, key_code: KeyCode, logical_key: Key, state: ButtonState) {
-        let window = self.window;
-        let message = KeyboardInput { key_code, logical_key, state, text: None, repeat: false, window };
-        self.app.world_mut().write_message(message);
-        self.app.update();
-    }
-
-    fn press(&mut self, key: Key) {
-        self.write_key(KeyCode::F24, key.clone(), ButtonState::Pressed);
-        self.write_key(KeyCode::F24, key, ButtonState::Released);
-    }
-
-    fn key(&mut self, character: &str) {
-        self.press(Key::Character(character.into()));
-    }
-
-    fn control(&mut self, character: &str, shift: bool) {
-        self.write_key(KeyCode::ControlLeft, Key::Control, ButtonState::Pressed);
-        if shift {
-            self.write_key(KeyCode::ShiftLeft, Key::Shift, ButtonState::Pressed);
-        }
-        self.key(character);
-        if shift {
-            self.write_key(KeyCode::ShiftLeft, Key::Shift, ButtonState::Released);
-        }
-        self.write_key(KeyCode::ControlLeft, Key::Control, ButtonState::Released);
-    }
-
-    fn orbit(&mut self) -> Orbit {
-        *self.app.world_mut().query::<&Orbit>().single(self.app.world()).unwrap()
-    }
-
-    fn bits(&mut self) -> Vec<u64> {
-        self.sandbox().open.as_ref().unwrap().painting.ln().iter().map(|ln| ln.to_bits()).collect()
-    }
-
-    /// λ of the pose that is shown.
-    fn shown_lambda(&mut self) -> f32 {
-        let pose =
-            self.app.world_mut().query_filtered::<&Pose, With<Shown>>().single(self.app.world()).unwrap().clone();
-        let film = &self.sandbox().snapshot.film;
-        let lambda = |state: &Arc<Vec<glam::Vec3A>>| {
-            film.iter().find(|key| Arc::ptr_eq(&key.positions, state)).expect("a state of the film").lambda
-        };
-        lambda(&pose.from) + pose.blend * (lambda(&pose.to) - lambda(&pose.from))
-    }
-}
-
-/// The middle of the view, where the hand is.
-const MIDDLE: [f32; 2] = [640.0, 360.0];
-
-fn paint(stage: &mut Stage) {
-    stage.key("b");
-    stage.drag(MouseButton::Left, MIDDLE, [660.0, 360.0]);
-}
+use homunculus::view::{Looks, Mode, Orbit, VoxelColour};
+use stage::{MIDDLE, PATIENCE, Stage, paint};
 
 #[test]
 fn a_stroke_changes_importance_under_the_pointer_and_undo_restores_the_bits() {
@@ -457,16 +308,80 @@ fn unsaved_work_is_there_after_a_crash() {
 }
 
 #[test]
-fn the_classic_solution_stands_beside() {
+fn other_settings_are_solved_again_and_escape_stops() {
     let mut stage = Stage::hand();
-    stage.sandbox().choice.compare = Compare::SideBySide;
+    stage.solved();
+    let lattice = stage.sandbox().snapshot.lattice.clone().unwrap();
+    stage.wish(Wish::SetResolution(24));
+    stage.wait("the finer lattice", |s| s.snapshot.lattice.as_ref().is_some_and(|l| l.summary.resolution == 24));
+    assert_ne!(lattice.summary.cells, stage.sandbox().snapshot.lattice.as_ref().unwrap().summary.cells);
+    stage.press(Key::Escape);
+    stage.wait("the stop", |s| !s.snapshot.phase.is_busy());
+    assert_eq!(stage.sandbox().snapshot.phase, Phase::Stopped);
+    stage.wish(Wish::Resume);
+    stage.solved();
+    stage.wish(Wish::SetFidelity(0.1));
+    stage.wait("the new solve", |s| s.snapshot.phase.is_busy());
+    stage.solved();
+    assert_eq!(stage.sandbox().snapshot.outcome.as_ref().unwrap().fidelity.mu, 0.1);
+    // What cannot be solved is refused in a sentence, and the scene stays as it was.
+    stage.wish(Wish::SetResolution(7));
+    let sandbox = stage.sandbox();
+    assert!(sandbox.problem.as_ref().is_some_and(|problem| problem.contains('7')), "{:?}", sandbox.problem);
+    assert_eq!(sandbox.open.as_ref().unwrap().settings().resolution, 24);
+}
+
+#[test]
+fn each_mode_shows_its_field_with_a_legend() {
+    let mut stage = Stage::hand();
+    stage.solved();
+    let modes = [
+        (Mode::Plain, None),
+        (Mode::Importance, Some("importance")),
+        (Mode::Fidelity, Some("fidelity")),
+        (Mode::Voxels(VoxelColour::Importance), Some("importance")),
+        (Mode::Voxels(VoxelColour::Growth), Some("growth")),
+    ];
+    for (mode, title) in modes {
+        stage.sandbox().choice.mode = mode;
+        stage.app.update();
+        stage.app.update();
+        let looks = stage.app.world_mut().query::<&Looks>().single(stage.app.world()).unwrap();
+        assert_eq!((looks.mode, looks.legend().map(|legend| legend.title)), (mode, title));
+    }
+}
+
+#[test]
+fn where_jumps_to_a_place_and_parallels_stay_parallel() {
+    let mut stage = Stage::hand();
+    let place = stage.sandbox().open.as_ref().unwrap().painting.under().boundary.positions[17];
+    stage.wish(Wish::LookAt(place));
+    let boundary = stage.sandbox().open.as_ref().unwrap().painting.under().boundary.clone();
+    let expected = homunculus::view::ViewFrame::of(&boundary).world_from_source(place);
+    assert!(stage.orbit().target.distance(expected) < 1e-5);
+    assert!(!stage.orbit().orthographic);
+    stage.sandbox().choice.orthographic = true;
     stage.app.update();
-    stage.app.update();
-    let count = stage.app.world_mut().query::<&homunculus::view::Body>().iter(stage.app.world()).count();
-    assert_eq!(count, 2);
-    stage.sandbox().choice.compare = Compare::Off;
-    stage.app.update();
-    stage.app.update();
-    let count = stage.app.world_mut().query::<&homunculus::view::Body>().iter(stage.app.world()).count();
-    assert_eq!(count, 1);
+    assert!(stage.orbit().orthographic);
+}
+
+#[test]
+fn files_that_are_dropped_are_taken_for_what_they_are() {
+    let mut stage = Stage::hand();
+    let drop = |stage: &mut Stage, path: PathBuf| {
+        stage.app.world_mut().write_message(FileDragAndDrop::DroppedFile { window: stage.window, path_buf: path });
+        stage.app.update();
+        stage.calm();
+    };
+    let table = stage.path("v.csv");
+    std::fs::write(&table, "vertex,importance\n0,3\n").unwrap();
+    drop(&mut stage, table);
+    assert_eq!(stage.sandbox().open.as_ref().unwrap().draft().layers.len(), 1, "{:?}", stage.sandbox().problem);
+    let mesh = stage.path("t.obj");
+    std::fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n").unwrap();
+    drop(&mut stage, mesh.clone());
+    assert_eq!(*stage.sandbox().open.as_ref().unwrap().source(), Source::File(mesh));
+    let scene = stage.path("hand.ron");
+    drop(&mut stage, scene.clone());
+    assert_eq!(stage.sandbox().open.as_ref().unwrap().file, Some(scene));
 }

@@ -1,0 +1,68 @@
+//! Where a state is faulty, as triangles of the boundary: what a picture marks.
+//!
+//! # Theory
+//! Faults are found on the complex as well as on the surface it carries. A crossing pair of the surface is two triangles of
+//! it. A crossing pair of the skin, an inverted element and a solid within another one are shown by the triangles whose
+//! corners lie in the cells concerned.
+
+use glam::Vec3A;
+
+use super::{elements, enclosed_solids};
+use crate::{
+    boundary::Boundary,
+    collision::Shell,
+    transfer::CellIndex,
+    voxel::{Complex, Dimension},
+};
+
+/// Which cells the triangles of a boundary lie in; made once for a complex.
+#[derive(Debug, Clone)]
+pub struct Places {
+    /// `[triangles]` cells of the corners; `u32::MAX` outside of the complex.
+    cells: Vec<[u32; 3]>,
+}
+
+impl Places {
+    /// Locates the boundary in the complex made from it.
+    pub fn new(boundary: &Boundary, complex: &Complex) -> Self {
+        let index = CellIndex::new(complex);
+        let locate = |p: &glam::DVec3| index.locate(complex.grid.lattice_from_source(*p)).unwrap_or(u32::MAX);
+        let of_vertex: Vec<u32> = boundary.positions.iter().map(locate).collect();
+        Self { cells: boundary.triangles.iter().map(|t| t.map(|v| of_vertex[v as usize])).collect() }
+    }
+
+    /// The triangles of the boundary that are faulty in a state, rising. `shells` as for [`certify`](super::certify): the
+    /// complex's skin, then the boundary.
+    ///
+    /// Empty exactly where the state is certified, unless a fault lies where no triangle has a corner.
+    pub fn faulty(&self, complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Vec<u32> {
+        let mut is_bad = vec![false; complex.cells.len()];
+        for cell in elements::inverted_cells(complex, positions) {
+            is_bad[cell] = true;
+        }
+        let enclosed = enclosed_solids(complex, positions);
+        if !enclosed.is_empty() {
+            for (bad, solid) in is_bad.iter_mut().zip(&complex.solid) {
+                *bad |= enclosed.contains(solid);
+            }
+        }
+        for (s, t) in shells.first().map(|skin| skin.crossings(positions)).unwrap_or_default() {
+            for face in [s, t] {
+                is_bad[complex.cell_of_face[face as usize] as usize] = true;
+            }
+        }
+        let mut faulty: Vec<u32> = (0..self.cells.len() as u32)
+            .filter(|&t| self.cells[t as usize].iter().any(|&c| is_bad.get(c as usize).is_some_and(|bad| *bad)))
+            .collect();
+        for shell in shells.iter().skip(1) {
+            match complex.dimension {
+                // Crossings of a picture's outline are lines, not triangles.
+                Dimension::Two => faulty.extend(shell.inverted(positions)),
+                Dimension::Three => faulty.extend(shell.crossings(positions).into_iter().flat_map(|(s, t)| [s, t])),
+            }
+        }
+        faulty.sort_unstable();
+        faulty.dedup();
+        faulty
+    }
+}
