@@ -15,6 +15,10 @@ pub struct ExportChoice {
     pub colour_mesh: bool,
     /// The same for the growth.
     pub colour_growth: bool,
+    /// Of a picture: pixels of the result along one of the input, 0.01..=64.
+    pub scale: f32,
+    /// Of a picture: extension of its growth.
+    pub picture_growth: &'static str,
     /// Length of the growth, seconds.
     pub seconds: f32,
     /// Length of the film, seconds, rests and the way back included.
@@ -32,6 +36,8 @@ impl Default for ExportChoice {
             format: "glb",
             colour_mesh: false,
             colour_growth: true,
+            scale: 1.0,
+            picture_growth: "gif",
             seconds: 4.0,
             film_seconds: 6.0,
             film_size: FILM_SIZES[0],
@@ -42,6 +48,9 @@ impl Default for ExportChoice {
 
 /// Sizes of films to choose from.
 const FILM_SIZES: [[u32; 2]; 4] = [[1280, 720], [1920, 1080], [3840, 2160], [1080, 1080]];
+
+/// Formats the growth of a picture can be written in.
+const PICTURE_GROWTH_FORMATS: [&str; 3] = ["gif", "apng", "glb"];
 
 /// Formats a mesh can be written in.
 pub const MESH_FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
@@ -70,6 +79,39 @@ pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &m
 }
 
 fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
+    if facts.is_picture() {
+        picture(ui, export, wishes);
+    } else {
+        mesh(ui, export, wishes);
+    }
+    if facts.can_record {
+        film(ui, facts, export, wishes);
+    }
+    part(ui, "Report", "JSON: what was asked, achieved and proven", Asked::ExportReport, wishes, |_| {});
+}
+
+fn seconds(ui: &mut Ui, seconds: &mut f32) {
+    ui.add(egui::DragValue::new(seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
+        .on_hover_text("How long it grows");
+}
+
+fn picture(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
+    part(ui, "Warped picture", "PNG with alpha, as deep as the input", Asked::ExportMesh, wishes, |ui| {
+        ui.add(egui::DragValue::new(&mut export.scale).range(0.01..=64.0).speed(0.01).prefix("×"))
+            .on_hover_text("Pixels of the result along one of the input, of the growth too");
+    });
+    let hint = "GIF or animated PNG; GLB is a textured mesh for any glTF viewer";
+    part(ui, "Growth animation", hint, Asked::ExportGrowth, wishes, |ui| {
+        seconds(ui, &mut export.seconds);
+        egui::ComboBox::from_id_salt("growth").width(60.0).selected_text(export.picture_growth).show_ui(ui, |ui| {
+            for format in PICTURE_GROWTH_FORMATS {
+                ui.selectable_value(&mut export.picture_growth, format, format);
+            }
+        });
+    });
+}
+
+fn mesh(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
     part(
         ui,
         "Warped mesh",
@@ -92,26 +134,28 @@ fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut V
         Asked::ExportGrowth,
         wishes,
         |ui| {
-            ui.add(egui::DragValue::new(&mut export.seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
-                .on_hover_text("How long it grows");
+            seconds(ui, &mut export.seconds);
             ui.checkbox(&mut export.colour_growth, "colours of importance");
         },
     );
-    if facts.can_record {
-        let hint = "MP4 or GIF, as the name ends; seen from where the view stands now, in its colours";
-        part(ui, "Film", hint, Asked::ExportFilm, wishes, |ui| {
-            ui.add(egui::DragValue::new(&mut export.film_seconds).range(0.5..=600.0).speed(0.05).suffix(" s"))
-                .on_hover_text("Length, rests and the way back included");
-            let name = |[width, height]: [u32; 2]| format!("{width}×{height}");
-            egui::ComboBox::from_id_salt("size").width(90.0).selected_text(name(export.film_size)).show_ui(ui, |ui| {
-                for size in FILM_SIZES {
-                    ui.selectable_value(&mut export.film_size, size, name(size));
-                }
-            });
-            ui.checkbox(&mut export.film_legend, "legend");
+}
+
+fn film(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
+    let hint = match facts.is_picture() {
+        true => "MP4 or GIF, as the name ends; in the colours of the view",
+        false => "MP4 or GIF, as the name ends; seen from where the view stands now, in its colours",
+    };
+    part(ui, "Film", hint, Asked::ExportFilm, wishes, |ui| {
+        ui.add(egui::DragValue::new(&mut export.film_seconds).range(0.5..=600.0).speed(0.05).suffix(" s"))
+            .on_hover_text("Length, rests and the way back included");
+        let name = |[width, height]: [u32; 2]| format!("{width}×{height}");
+        egui::ComboBox::from_id_salt("size").width(90.0).selected_text(name(export.film_size)).show_ui(ui, |ui| {
+            for size in FILM_SIZES {
+                ui.selectable_value(&mut export.film_size, size, name(size));
+            }
         });
-    }
-    part(ui, "Report", "JSON: what was asked, achieved and proven", Asked::ExportReport, wishes, |_| {});
+        ui.checkbox(&mut export.film_legend, "legend");
+    });
 }
 
 fn part(ui: &mut Ui, name: &str, hint: &str, asked: Asked, wishes: &mut Vec<Wish>, settings: impl FnOnce(&mut Ui)) {

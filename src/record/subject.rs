@@ -13,7 +13,7 @@ use crate::film::blend;
 use crate::schedule::{Outcome, Solved};
 use crate::transfer::Binding;
 use crate::view::{Body, Pose, ViewFrame};
-use crate::voxel::Complex;
+use crate::voxel::{Complex, Dimension};
 
 /// A solved domain before the camera.
 pub struct Subject {
@@ -117,6 +117,11 @@ impl Subject {
         self.proven.entry(shot).or_insert_with(check).clone()
     }
 
+    /// Whether it is a picture.
+    pub(super) fn is_picture(&self) -> bool {
+        self.complex.dimension == Dimension::Two
+    }
+
     /// Points of the surface in view space, standing on the floor, over all of the certified growth, and of Eq. 1 alone.
     pub(super) fn reach(&self) -> [Vec<Vec3>; 2] {
         let points = |state: &State| self.surface(state);
@@ -132,6 +137,11 @@ impl Subject {
         if !frame.is_flat {
             let lowest = points.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
             points.iter_mut().for_each(|p| p.y -= lowest);
+        }
+        if self.is_picture() {
+            // Looked at straight on, it reaches as far as the box around it.
+            let low = points.iter().copied().reduce(Vec3::min);
+            return low.into_iter().chain(points.into_iter().reduce(Vec3::max)).collect();
         }
         let every = points.len().div_ceil(FITTED).max(1);
         points.into_iter().step_by(every).filter(|p| p.is_finite()).collect()

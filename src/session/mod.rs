@@ -15,7 +15,7 @@ mod linear;
 mod snapshot;
 mod worker;
 
-pub use linear::Linear;
+pub use linear::{Asked, Linear};
 pub use snapshot::{Histogram, Lattice, Phase, Snapshot, State};
 
 use std::{
@@ -23,15 +23,17 @@ use std::{
     time::Instant,
 };
 
-use crate::{boundary::Boundary, importance::Stack, schedule::Settings};
+use crate::{boundary::Boundary, importance::Stack, paint::PaintedPicture, schedule::Settings};
 
 /// What to solve.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// B.
     pub boundary: Arc<Boundary>,
-    /// F.
+    /// F; of a picture nothing, as it brings its own.
     pub importance: Arc<Stack>,
+    /// The picture with what was painted on it, where it is one; `boundary` is then the mesh that is painted on.
+    pub picture: Option<Arc<PaintedPicture>>,
     /// How.
     pub settings: Settings,
 }
@@ -39,11 +41,18 @@ pub struct Subject {
 /// What the solver is told.
 enum Order {
     Open(Subject),
-    Importance(Arc<Stack>, Instant),
+    Importance(Asking, Instant),
     Settings(Settings),
     Cancel,
     Resume,
     Shutdown,
+}
+
+/// How a change of importance is told.
+#[derive(Clone)]
+enum Asking {
+    Surface(Arc<Stack>),
+    Picture(Arc<PaintedPicture>),
 }
 
 /// A solver in the background. Dropping it ends its thread.
@@ -92,7 +101,12 @@ impl Session {
 
     /// Goes on with another importance of the same boundary.
     pub fn set_importance(&self, importance: Arc<Stack>) {
-        self.order(Order::Importance(importance, Instant::now()));
+        self.order(Order::Importance(Asking::Surface(importance), Instant::now()));
+    }
+
+    /// The same for a picture.
+    pub fn set_picture(&self, picture: Arc<PaintedPicture>) {
+        self.order(Order::Importance(Asking::Picture(picture), Instant::now()));
     }
 
     /// Solves with other settings.

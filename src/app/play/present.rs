@@ -4,15 +4,17 @@ use std::sync::Arc;
 
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 
+use super::document::Document;
 use super::pointer::Viewport;
 use super::sandbox::{Look, Sandbox};
 use crate::panel::Compare;
-use crate::session::{Phase, Snapshot};
+use crate::session::{Lattice, Phase, Snapshot};
 use crate::view::{
-    Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe,
+    Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, Studio, ViewFrame, VoxelColour, Wipe,
 };
+use crate::voxel::{Complex, Dimension};
 
 /// The certified body.
 #[derive(Component)]
@@ -44,7 +46,9 @@ pub(super) fn bodies(
     orbits: Query<&Orbit>,
 ) {
     let Some(lattice) = &sandbox.snapshot.lattice else { return };
-    let is_new = !shown.iter().any(|(_, body)| Arc::ptr_eq(&body.complex, &lattice.complex));
+    let is_shown =
+        |body: &Body| Arc::ptr_eq(&body.complex, &lattice.complex) && Arc::ptr_eq(&body.binding, &lattice.binding);
+    let is_new = !shown.iter().any(|(_, body)| is_shown(body));
     let body = || Body {
         boundary: lattice.boundary.clone(),
         complex: lattice.complex.clone(),
@@ -106,9 +110,18 @@ pub(super) fn poses(
     }
 }
 
-/// How wide the boundary is, view units.
+/// Whether it is a picture's.
+fn is_flat(complex: &Complex) -> bool {
+    complex.dimension == Dimension::Two
+}
+
+/// How wide the boundary is, view units; of a picture as wide as it will be.
 fn width(snapshot: &Snapshot) -> f32 {
     let Some(lattice) = &snapshot.lattice else { return 1.0 };
+    if is_flat(&lattice.complex) {
+        let [low, high] = reach(snapshot, lattice);
+        return ViewFrame::of(&lattice.boundary).world_length(high.x - low.x);
+    }
     let (low, high) = lattice.boundary.bounds().unwrap_or_default();
     ViewFrame::of(&lattice.boundary).world_length((high.x - low.x).max(0.5 * (high.y - low.y)))
 }
@@ -155,9 +168,18 @@ pub(super) fn looks(
     let snapshot = &sandbox.snapshot;
     let Some((open, lattice)) = sandbox.open.as_ref().zip(snapshot.lattice.as_ref()) else { return };
     let version = open.painting.version();
-    let fits = open.painting.ln().len() == lattice.boundary.positions.len();
-    if fits && painted.as_ref().is_none_or(|(at, values)| *at != version || values.len() != open.painting.ln().len()) {
-        *painted = Some((version, Arc::new(open.painting.importance())));
+    let vertices = lattice.boundary.positions.len();
+    let fits =
+        open.is_picture() == is_flat(&lattice.complex) && (open.is_picture() || open.painting.ln().len() == vertices);
+    if fits && painted.as_ref().is_none_or(|(at, values)| *at != version || values.len() != vertices) {
+        let importance = match &open.painting.under().ground {
+            Some(ground) => {
+                let ln = ground.carried(open.painting.ln(), &lattice.boundary);
+                ln.into_iter().map(|ln| ln.exp() as f32).collect()
+            }
+            None => open.painting.importance(),
+        };
+        *painted = Some((version, Arc::new(importance)));
     }
     let importance = painted.as_ref().filter(|_| fits).map(|(_, values)| values.clone());
     let choice = &sandbox.choice;
@@ -217,13 +239,22 @@ pub(super) fn camera(
     mut orbits: Query<&mut Orbit>,
     viewport: Res<Viewport>,
     time: Res<Time>,
-    mut framed: Local<Option<(Vec3, f32)>>,
+    studio: Option<ResMut<Studio>>,
+    (mut framed, mut was_picture): (Local<Option<(Vec3, f32)>>, Local<bool>),
 ) {
     let Ok(mut orbit) = orbits.single_mut() else { return };
     let mut wanted = *orbit;
-    wanted.orthographic = sandbox.choice.orthographic;
+    let is_picture = sandbox.open.as_ref().is_some_and(Document::is_picture);
+    wanted.orthographic = sandbox.choice.orthographic || is_picture;
     wanted.turntable = if sandbox.choice.turntable { TURNTABLE } else { 0.0 };
     wanted.turn(time.delta_secs());
+    if let Some(mut studio) = studio {
+        studio.set_if_neq(Studio { floor: !is_picture, ..studio.clone() });
+    }
+    // A body after a picture is looked at as at first.
+    if std::mem::replace(&mut *was_picture, is_picture) && !is_picture {
+        wanted = Orbit { orthographic: sandbox.choice.orthographic, ..Orbit::default() };
+    }
     // What was framed before it had grown is framed again when it has, unless the user has looked elsewhere since.
     if sandbox.snapshot.phase == Phase::Done && framed.take() == Some((orbit.target, orbit.distance)) {
         sandbox.looks.push(Look::Frame);
@@ -249,16 +280,17 @@ pub(super) fn camera(
             }
         }
     }
+    if is_picture {
+        // Straight on, whatever was asked for.
+        (wanted.yaw, wanted.pitch) = (0.0, 0.0);
+    }
     orbit.set_if_neq(wanted);
     sandbox.bypass_change_detection().seen_from = wanted;
 }
 
-/// The box around what is shown, view space.
-fn bounds(snapshot: &Snapshot, beside: bool) -> [Vec3; 2] {
-    let Some(lattice) = &snapshot.lattice else { return [Vec3::ZERO, Vec3::ONE] };
-    let frame = ViewFrame::of(&lattice.boundary);
+/// The box around the rest shape and the last of what is known of its growth, source units.
+fn reach(snapshot: &Snapshot, lattice: &Lattice) -> [DVec3; 2] {
     let (mut low, mut high) = lattice.boundary.bounds().unwrap_or_default();
-    let is_flat = high.z <= low.z;
     let last = snapshot.film.last().map(|state| &state.positions).or(snapshot.linear.as_ref());
     if let Some(state) = last.filter(|state| state.len() == lattice.complex.nodes()) {
         let h = lattice.complex.grid;
@@ -267,6 +299,15 @@ fn bounds(snapshot: &Snapshot, beside: bool) -> [Vec3; 2] {
             (low, high) = (low.min(p), high.max(p));
         }
     }
+    [low, high]
+}
+
+/// The box around what is shown, view space.
+fn bounds(snapshot: &Snapshot, beside: bool) -> [Vec3; 2] {
+    let Some(lattice) = &snapshot.lattice else { return [Vec3::ZERO, Vec3::ONE] };
+    let frame = ViewFrame::of(&lattice.boundary);
+    let [low, high] = reach(snapshot, lattice);
+    let is_flat = is_flat(&lattice.complex);
     let (mut low, mut high) = (frame.world_from_source(low), frame.world_from_source(high));
     if !is_flat {
         // What has grown downwards is lifted onto the floor.
