@@ -100,8 +100,8 @@ fn a_picture_at_rest_has_its_own_colours_and_outline() {
     assert!(difference(&rest, &open(folder.path(), "grown.png")) > 2.0);
     // Sabotage: through the colour map the colours are not the picture's.
     record(folder.path(), &format!("{order} --view importance").replace("rest.png", "mapped.png"));
-    let mapped = colour_at(&open(folder.path(), "mapped.png"), [0.25, 0.25]);
-    assert!(mapped[2].abs_diff(FIELDS[0][2]) > 20, "{mapped:?}");
+    let mapped = colour_at(&open(folder.path(), "mapped.png"), [0.75, 0.75]);
+    assert!(mapped[2].abs_diff(FIELDS[3][2]) > 20, "{mapped:?}");
 }
 
 #[test]
@@ -203,12 +203,8 @@ fn inspect_tells_what_is_in_a_picture() {
     let output = run(folder.path(), "inspect fields.png --resolution 20");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(output.status.code(), Some(0), "{text}");
-    for line in [
-        "100 × 80, 8 bits a channel",
-        "4800 pixels, 60 % of all",
-        "cell size             4 pixels",
-        "cells                 300",
-    ] {
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for line in ["100 × 80, 8 bits a channel", "4800 pixels, 60 % of all", "cell size 4 pixels", "cells 300"] {
         assert!(text.contains(line), "{line}: {text}");
     }
     let output = run(folder.path(), "inspect fields.png --resolution 20 --json");

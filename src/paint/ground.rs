@@ -155,7 +155,9 @@ impl PaintedPicture {
                 }
             },
         );
-        Arc::new(Flat { importance, ..(**flat).clone() })
+        let Flat { name, size, inside, regions, .. } = &**flat;
+        let (name, inside, regions) = (name.clone(), inside.clone(), regions.clone());
+        Arc::new(Flat { name, size: *size, inside, importance, regions })
     }
 
     /// The same as importance of pixels.

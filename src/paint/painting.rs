@@ -249,6 +249,8 @@ impl Painting {
     fn repaint(&mut self) {
         if self.under.boundary.positions.len() != self.canvas.vertices() {
             self.canvas = Arc::new(Canvas::new(&self.under.boundary));
+        } else if !self.canvas.has_regions(self.under.boundary.regions.as_ref()) {
+            self.canvas = Arc::new(self.canvas.with_regions(self.under.boundary.regions.as_ref()));
         }
         self.ln_under = logarithms(&self.under);
         self.ln = replay(&self.canvas, &self.ln_under, &self.edits);

@@ -138,6 +138,7 @@ fn findings(subject: &mut Subject, settings: &Settings, frame: &FramePlan) -> Fi
     Findings {
         growth: (settings.view != View::Classic).then(|| subject.certificate(frame.mix)),
         classic: shows_classic.then(|| subject.classic_certificate(frame.lambda)),
+        crossed: if shows_classic { subject.classic_crossed(frame.lambda) } else { Vec::new() },
     }
 }
 

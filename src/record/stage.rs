@@ -1,5 +1,7 @@
 //! The studio with the subject in it: one picture for each frame of the plan.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 use image::RgbaImage;
 
@@ -22,12 +24,14 @@ const GAP: f32 = 0.12;
 const FINE_PIXELS: u32 = 3840 * 2160;
 
 /// What one frame shows was found to be.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Findings {
     /// Of the growth, where it is shown.
     pub growth: Option<Certificate>,
     /// Of Eq. 1 alone, where it is shown.
     pub classic: Option<Certificate>,
+    /// Triangles of a picture where Eq. 1's state crosses itself.
+    pub crossed: Vec<u32>,
 }
 
 /// A studio.
@@ -74,7 +78,7 @@ impl Stage {
         let mut stage = Self { renderer, growth, classic, slate, lens, orbit, apart };
         // Shaders, letters and textures come with the first picture, which is not shown.
         if let Some(first) = plan.first() {
-            stage.picture(subject, first, &Findings { growth: None, classic: None })?;
+            stage.picture(subject, first, &Findings::default())?;
         }
         Ok(stage)
     }
@@ -99,6 +103,12 @@ impl Stage {
             self.renderer.pose(entity, pose);
             if self.apart > 0.0 {
                 self.renderer.world_mut().entity_mut(entity).insert(Placement { offset });
+            }
+        }
+        if let Some(mut looks) = self.classic.and_then(|classic| self.renderer.world_mut().get_mut::<Looks>(classic)) {
+            let marked = (!findings.crossed.is_empty()).then(|| Arc::new(findings.crossed.clone()));
+            if looks.marked != marked {
+                looks.marked = marked;
             }
         }
         if self.growth.is_some() && self.classic.is_some() {

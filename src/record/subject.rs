@@ -42,6 +42,9 @@ enum Shot {
     Classic(u32),
 }
 
+/// A mark is seen when it is as wide as one of so many cells along the longest side.
+const SEEN: u32 = 64;
+
 /// Vertices of a state that the camera is fitted to, about: enough that none sticks out by more than the margin.
 const FITTED: usize = 4000;
 
@@ -109,6 +112,27 @@ impl Subject {
     pub(super) fn classic_certificate(&mut self, lambda: f32) -> Certificate {
         let pose = self.classic_pose(lambda);
         self.prove(Shot::Classic(lambda.to_bits()), &pose)
+    }
+
+    /// Triangles of a picture's mesh where its outline crosses itself in Eq. 1's state at λ, with as many cells around as it
+    /// takes to be seen.
+    pub(super) fn classic_crossed(&self, lambda: f32) -> Vec<u32> {
+        let pose = self.classic_pose(lambda);
+        let complex = &self.complex;
+        let Some(skin) = self.shells.first().filter(|_| complex.dimension == Dimension::Two) else {
+            return Vec::new();
+        };
+        let crossings = skin.crossings(&blend(&pose.from, &pose.to, pose.blend));
+        let faces = crossings.into_iter().flat_map(|(s, t)| [s, t]);
+        let mut cells: Vec<u32> = faces.map(|face| complex.cell_of_face[face as usize]).collect();
+        for _ in 0..complex.grid.cells.max_element() / SEEN {
+            let corners = cells.iter().flat_map(|&cell| complex.corners[cell as usize]);
+            cells = corners.flat_map(|node| complex.cells_around[node as usize]).filter(|&c| c != u32::MAX).collect();
+            cells.sort_unstable();
+            cells.dedup();
+        }
+        // The halved lattice has eight triangles in each cell, cell by cell.
+        cells.into_iter().flat_map(|cell| 8 * cell..8 * cell + 8).collect()
     }
 
     fn prove(&mut self, shot: Shot, pose: &Pose) -> Certificate {

@@ -19,7 +19,11 @@ pub use linear::{Asked, Linear};
 pub use snapshot::{Histogram, Lattice, Phase, Snapshot, State};
 
 use std::{
-    sync::{Arc, Mutex, mpsc},
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicU64, Ordering},
+        mpsc,
+    },
     time::Instant,
 };
 
@@ -40,7 +44,7 @@ pub struct Subject {
 
 /// What the solver is told.
 enum Order {
-    Open(Subject),
+    Open(Subject, u64),
     Importance(Asking, Instant),
     Settings(Settings),
     Cancel,
@@ -59,6 +63,8 @@ enum Asking {
 pub struct Session {
     orders: mpsc::Sender<Order>,
     shared: Arc<Shared>,
+    /// How many subjects it was given.
+    opened: AtomicU64,
 }
 
 /// What both sides see.
@@ -91,12 +97,13 @@ impl Session {
             .name("solver".into())
             .spawn(move || worker::work(&inbox, &seen))
             .map_err(|e| crate::Error::Fault(format!("starting the solver's thread: {e}")))?;
-        Ok(Self { orders, shared })
+        Ok(Self { orders, shared, opened: AtomicU64::new(0) })
     }
 
     /// Solves something else.
     pub fn open(&self, subject: Subject) {
-        self.order(Order::Open(subject));
+        let number = self.opened.fetch_add(1, Ordering::Relaxed) + 1;
+        self.order(Order::Open(subject, number));
     }
 
     /// Goes on with another importance of the same boundary.
@@ -124,9 +131,13 @@ impl Session {
         self.order(Order::Resume);
     }
 
-    /// Where it is: cheap, never waits for the solver.
+    /// Where it is: cheap, never waits for the solver. Nothing of a subject before the one it was given last.
     pub fn snapshot(&self) -> Arc<Snapshot> {
-        self.shared.latest()
+        let latest = self.shared.latest();
+        if latest.opened == self.opened.load(Ordering::Relaxed) {
+            return latest;
+        }
+        Arc::new(Snapshot { phase: Phase::Preparing, ..Snapshot::default() })
     }
 
     fn order(&self, order: Order) {

@@ -47,6 +47,8 @@ impl Phase {
 pub struct Snapshot {
     /// Rises with each snapshot.
     pub version: u64,
+    /// Of which subject, in the order they were given, from 1.
+    pub opened: u64,
     /// What the solver is doing.
     pub phase: Phase,
     /// λ of the state being solved, 0..=1.

@@ -57,7 +57,7 @@ pub(super) fn work(inbox: &mpsc::Receiver<Order>, shared: &Shared) {
 fn newest(first: Order, inbox: &mpsc::Receiver<Order>) -> Vec<Order> {
     let mut orders: Vec<Order> = Vec::new();
     for order in std::iter::once(first).chain(inbox.try_iter()) {
-        if matches!(order, Order::Open(_)) {
+        if matches!(order, Order::Open(..)) {
             orders.clear();
         }
         orders.retain(|o| std::mem::discriminant(o) != std::mem::discriminant(&order));
@@ -115,7 +115,10 @@ impl Worker<'_> {
         for order in orders {
             let result = match order {
                 Order::Shutdown => return false,
-                Order::Open(subject) => self.open(subject),
+                Order::Open(subject, number) => {
+                    self.now.opened = number;
+                    self.open(subject)
+                }
                 Order::Importance(asking, at) => self.set_importance(asking, Some(at)),
                 Order::Settings(settings) => self.set_settings(settings),
                 Order::Cancel => {
@@ -142,8 +145,8 @@ impl Worker<'_> {
     }
 
     fn open(&mut self, subject: Subject) -> Result<()> {
-        let version = self.now.version;
-        self.now = Snapshot { version, phase: Phase::Preparing, ..Snapshot::default() };
+        let Snapshot { version, opened, .. } = self.now;
+        self.now = Snapshot { version, opened, phase: Phase::Preparing, ..Snapshot::default() };
         match subject.picture {
             Some(_) => check_flat_resolution(subject.settings.resolution)?,
             None => check_resolution(subject.settings.resolution)?,

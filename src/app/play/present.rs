@@ -248,6 +248,10 @@ pub(super) fn camera(
     wanted.orthographic = sandbox.choice.orthographic || is_picture;
     wanted.turntable = if sandbox.choice.turntable { TURNTABLE } else { 0.0 };
     wanted.turn(time.delta_secs());
+    if is_picture {
+        // Straight on, whatever is asked for.
+        (wanted.yaw, wanted.pitch) = (0.0, 0.0);
+    }
     if let Some(mut studio) = studio {
         studio.set_if_neq(Studio { floor: !is_picture, ..studio.clone() });
     }
@@ -263,6 +267,7 @@ pub(super) fn camera(
         let sandbox = sandbox.bypass_change_detection();
         for look in std::mem::take(&mut sandbox.looks) {
             match look {
+                Look::From(_) if is_picture => {}
                 Look::From(axis) => wanted.look_from(axis),
                 Look::Frame => {
                     let [low, high] = bounds(&sandbox.snapshot, sandbox.choice.compare == Compare::SideBySide);
@@ -279,10 +284,6 @@ pub(super) fn camera(
                 }
             }
         }
-    }
-    if is_picture {
-        // Straight on, whatever was asked for.
-        (wanted.yaw, wanted.pitch) = (0.0, 0.0);
     }
     orbit.set_if_neq(wanted);
     sandbox.bypass_change_detection().seen_from = wanted;
