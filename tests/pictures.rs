@@ -184,7 +184,7 @@ fn a_picture_is_looked_at_straight_on() {
         ("--camera 20,8", "--camera 0,0,ZOOM"),
         ("--attribute weight", "a picture has no vertices"),
     ] {
-        let output = run(folder.path(), &format!("record fields.png {SMALL} {options} -o out.png --still 1"));
+        let output = run(folder.path(), &format!("record fields.png {SMALL} {options} -o out.png --still 1 --quiet"));
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         if error.contains("Vulkan") {
             eprintln!("skipped: no Vulkan driver");

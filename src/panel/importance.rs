@@ -130,7 +130,8 @@ fn layers(ui: &mut Ui, facts: &Facts, wishes: &mut Vec<Wish>) {
     }
     let is_picture = facts.is_picture();
     // What is said of a built-in picture takes the place of its own; a model's lies below.
-    if matches!(draft.source, crate::scene::Source::Gallery(_)) && !(is_picture && !draft.layers.is_empty()) {
+    let has_own = matches!(draft.source, crate::scene::Source::Gallery(_));
+    if has_own && (!is_picture || draft.layers.is_empty()) {
         ui.label(theme::weak("the model's own importance"));
     }
     theme::row(ui, "Base", "Importance where nothing else is said", |ui| {

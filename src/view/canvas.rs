@@ -287,8 +287,8 @@ impl Canvas {
             let Some(mut material) = easel.materials.get(&part.material).cloned() else { continue };
             material.shown = self.ghost_shown.clone();
             let coat = Coat::Ghost;
-            // A picture's ghost is the picture, behind it.
-            let (alpha_mode, variant, behind) = if part.own.is_flat {
+            // A picture's ghost is the picture, before it: behind what has grown nothing of it would be seen.
+            let (alpha_mode, variant, before) = if part.own.is_flat {
                 (AlphaMode::Premultiplied, Variant { coat, ..part.own }, 0.01)
             } else {
                 let shadow_taps = part.own.shadow_taps;
@@ -296,7 +296,7 @@ impl Canvas {
             };
             (material.alpha_mode, material.variant) = (alpha_mode, variant);
             let drawn = (
-                Transform::from_xyz(0.0, 0.0, -behind),
+                Transform::from_xyz(0.0, 0.0, before),
                 Mesh3d(part.mesh.clone()),
                 MeshMaterial3d(easel.materials.add(material)),
                 NoFrustumCulling,

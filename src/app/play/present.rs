@@ -42,7 +42,7 @@ pub(super) fn bodies(
     sandbox: Res<Sandbox>,
     shown: Query<(Entity, &Body), With<Shown>>,
     classic: Query<Entity, With<Classic>>,
-    references: Query<Entity, With<SizeLegend>>,
+    mut references: Query<(Entity, &mut SizeLegend)>,
     orbits: Query<&Orbit>,
 ) {
     let Some(lattice) = &sandbox.snapshot.lattice else { return };
@@ -69,17 +69,37 @@ pub(super) fn bodies(
     }
     let shows_sizes = sandbox.choice.size_legend && !orbits.is_empty();
     if !shows_sizes || is_new {
-        references.iter().for_each(|entity| commands.entity(entity).despawn());
+        references.iter().for_each(|(entity, _)| commands.entity(entity).despawn());
     }
-    if shows_sizes && (is_new || references.is_empty()) {
-        let (low, high) = lattice.boundary.bounds().unwrap_or_default();
-        let frame = ViewFrame::of(&lattice.boundary);
-        let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
-        // Beside the feet, before them: there they hide nothing.
-        let row = REFERENCE * (SizeLegend::FACTORS.iter().sum::<f32>() + 3.0);
-        let at = Vec3::new(0.5 * (low.x + high.x) + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1);
-        commands.spawn(SizeLegend { unit: REFERENCE, is_flat: high.z <= low.z, at });
+    if !shows_sizes {
+        return;
     }
+    let wanted = references_of(&sandbox.snapshot, lattice);
+    match references.single_mut() {
+        Ok((_, mut legend)) if !is_new => drop(legend.set_if_neq(wanted)),
+        _ => drop(commands.spawn(wanted)),
+    }
+}
+
+/// Where the reference shapes are: beside a body's feet and before them, below a picture however it grows. There they hide
+/// nothing.
+fn references_of(snapshot: &Snapshot, lattice: &Lattice) -> SizeLegend {
+    let is_flat = is_flat(&lattice.complex);
+    let (low, high) = match is_flat {
+        true => reach(snapshot, lattice).into(),
+        false => lattice.boundary.bounds().unwrap_or_default(),
+    };
+    let frame = ViewFrame::of(&lattice.boundary);
+    let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
+    let largest = REFERENCE * SizeLegend::FACTORS[SizeLegend::FACTORS.len() - 1];
+    let row = REFERENCE * (SizeLegend::FACTORS.iter().sum::<f32>() + 3.0);
+    let middle = 0.5 * (low.x + high.x);
+    let at = if is_flat {
+        Vec3::new(middle, low.y - 0.6 * largest, 0.0)
+    } else {
+        Vec3::new(middle + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1)
+    };
+    SizeLegend { unit: REFERENCE, is_flat, at }
 }
 
 type Posed<'a> = (Entity, Option<&'a Pose>, &'a Rest, &'a mut Placement);
