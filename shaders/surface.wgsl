@@ -214,7 +214,12 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
     colour *= in.colour;
 #endif
 #ifdef TEXTURED
+#ifdef FLAT
+    // Between two mip levels the finer one has more say: letters stay readable where a picture is drawn a little smaller.
+    colour *= textureSampleBias(base_texture, base_sampler, in.uv, -0.4);
+#else
     colour *= textureSample(base_texture, base_sampler, in.uv);
+#endif
 #endif
 #ifdef MASKED
     if colour.a < base.alpha_cutoff {
@@ -224,6 +229,35 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
 
     let pixel = max(length(fwidth(in.rest)), 1.0e-6);
     let brush = brushed(in.rest, pixel);
+#ifdef FLAT
+    // A picture: light of its own, premultiplied by alpha, so that no colour of what is transparent shows at an edge.
+    let luminance = dot(colour.rgb, vec3(0.2126, 0.7152, 0.0722));
+#ifdef GHOST
+    return vec4(vec3(luminance), colour.a) * shown.opacity;
+#else
+#ifdef MAPPED
+    // The picture's brightness is to a map what light is to a body: the legend's colour where it is white.
+    var lit = mapped(in.field.x) * colour.a;
+#ifdef TEXTURED
+    lit *= mix(0.4, 1.0, pow(saturate(luminance / max(colour.a, 1.0e-3)), 1.0 / 2.2));
+#endif
+#else
+    var lit = colour.rgb;
+#endif
+#ifdef HAS_FIELD
+    lit = mix(lit, vec3(0.73, 0.015, 0.012) * colour.a, smoothstep(0.95, 0.999, in.field.y));
+#endif
+#ifdef EDGED
+    let side = min(in.uv, vec2(1.0) - in.uv) / fwidth(in.uv);
+    let edge = 1.0 - smoothstep(0.4, 1.4, min(side.x, side.y));
+    let block = 1.0 / max(fwidth(in.uv).x, fwidth(in.uv).y);
+    lit *= 1.0 - 0.4 * edge * smoothstep(3.0, 9.0, block);
+#endif
+    lit = mix(lit, shown.dab_colour.rgb * colour.a, 0.75 * brush.y);
+    lit = mix(lit, shown.ring_colour.rgb, brush.x);
+    return vec4(lit, max(colour.a, brush.x)) * shown.opacity;
+#endif
+#else
 #ifdef UNLIT
     var lit = colour.rgb;
     lit = mix(lit, shown.dab_colour.rgb, 0.75 * brush.y);
@@ -285,6 +319,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> @locatio
 #endif
     lit = mix(lit, shown.ring_colour.rgb, brush.x);
     return vec4(studio::dithered(lit, in.position.xy), colour.a * shown.opacity);
+#endif
 #endif
 #endif
 }

@@ -36,13 +36,13 @@ use crate::{
         plugin::{FilmPlugin, Reel},
     },
     importance::{
-        self,
+        self, asked_sizes,
         plugin::{Importance, ImportancePlugin},
     },
     reference::plugin::{ReferenceIterations, ReferencePlugin},
     scene::{check_flat_resolution, check_resolution},
     transfer::{
-        Binding,
+        Binding, flat_boundary,
         plugin::{Bound, SelfIntersections, TransferPlugin},
     },
     voxel::{
@@ -403,13 +403,14 @@ impl Run {
             (entity.get::<Lattice>(), entity.get::<CollisionProblem>())
         {
             let (complex, mut problem) = (complex.clone(), problem.clone());
-            problem.importance.clone_from(&importance.cells);
+            problem.importance = asked_sizes(&complex, &importance.cells);
             problem.fidelity = domain.settings.fidelity;
             problem.from = None;
             let growth = Growth::of(complex.dimension, domain.settings.keys, &problem.importance);
             entity.insert((CollisionProblem(problem), Growing(growth), Warped(complex.rest.clone())));
             let fresh = (Rotations::default(), Holds::default(), BoundaryAtRisk::default(), Leap::default());
             entity.insert(fresh).remove::<Reel>();
+            correct_anew(&mut entity, &domain);
         }
         entity.insert((domain, importance, linear));
         *self.app.world_mut().resource_mut::<Stopwatch>() = Stopwatch::default();
@@ -438,15 +439,16 @@ impl Run {
         let parts = parts.map(|(lattice, problem)| (lattice.0.clone(), problem.0.clone()));
         let ready = start.zip(parts).filter(|((_, _, size), (complex, _))| size.len() == complex.cells.len());
         entity.insert(Shells(shells));
-        let Some(((positions, certificate, size), (_, mut problem))) = ready else { return false };
-        problem.importance.clone_from(&importance.cells);
+        let Some(((positions, certificate, size), (complex, mut problem))) = ready else { return false };
+        problem.importance = asked_sizes(&complex, &importance.cells);
         problem.fidelity = domain.settings.fidelity;
         let change = size.iter().zip(&problem.importance).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f32::max);
         problem.from = Some(size);
         let mut film = Film::default();
         film.push(Keyframe { lambda: 0.0, positions: positions.clone(), certificate, way_is_clear: true });
-        let growth = (Growing(Growth::change(change)), Leap::default());
+        let growth = (Growing(Growth::change(complex.dimension, change)), Leap::default());
         entity.insert((CollisionProblem(problem), growth, Warped(positions), Reel(film)));
+        correct_anew(&mut entity, &domain);
         entity.insert((domain, importance, linear));
         true
     }
@@ -476,6 +478,14 @@ impl Run {
         })();
         parts.ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
     }
+}
+
+/// Areas of a picture's regions are corrected from the beginning, for what is asked of them now.
+fn correct_anew(entity: &mut EntityWorldMut, domain: &Domain) {
+    match domain.picture.as_ref().filter(|picture| picture.regions.is_some()) {
+        Some(picture) => entity.insert(AreaCorrection::new(picture, &domain.boundary)),
+        None => entity.remove::<AreaCorrection>(),
+    };
 }
 
 /// Where a domain is; the stage named is the one about to run.
@@ -632,6 +642,19 @@ pub fn inspect(boundary: &Boundary, resolution: u32) -> Result<(InputSummary, Do
     let shell = Shell::boundary(boundary, Binding::new(boundary, &complex), &complex);
     let welds = suspected_welds(boundary, &boundary.welded(), &complex);
     Ok((input_summary(boundary, shell.inherited()), domain_summary(&complex, resolution, welds)))
+}
+
+/// The mesh a picture would be drawn on, what it is, and what would be voxelized. Importance and regions are not needed.
+///
+/// # Errors
+/// As [`warp`].
+pub fn inspect_picture(picture: &Flat, resolution: u32) -> Result<(Boundary, InputSummary, DomainSummary)> {
+    check_flat_resolution(resolution)?;
+    let complex = picture.lattice(resolution)?;
+    let boundary = flat_boundary(&picture.name, &complex, picture.size);
+    // The lattice's own triangles cross nowhere.
+    let input = input_summary(&boundary, 0);
+    Ok((boundary, input, domain_summary(&complex, resolution, 0)))
 }
 
 #[cfg(test)]

@@ -43,7 +43,15 @@ fn sheets(n: u32) -> Boundary {
 
 fn under(boundary: &Arc<Boundary>, layers: Vec<Layer>) -> Under {
     let stack = Stack::load(&layers, 1.0, false, boundary, Path::new("")).unwrap();
-    Under { layers, hidden: Vec::new(), base: 1.0, clamp: false, boundary: boundary.clone(), stack: Arc::new(stack) }
+    Under {
+        layers,
+        hidden: Vec::new(),
+        base: 1.0,
+        clamp: false,
+        boundary: boundary.clone(),
+        stack: Arc::new(stack),
+        ground: None,
+    }
 }
 
 fn hill() -> Layer {

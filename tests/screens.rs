@@ -232,6 +232,60 @@ fn the_window_opens_paints_plays_refuses_and_saves() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+/// A picture of two halves, painted in the middle.
+const PICTURE_SCENARIO: &str = "
+open halves.ron
+wait done
+frames 4
+shot rest.png
+frames 4
+key b
+drag 600 360 680 360 8 left
+key v
+wait done
+expect strokes 1
+expect calm
+drag 640 300 680 320 4 left
+save painted.ron
+mesh warped.png
+growth growth.gif
+wait idle
+frames 4
+shot moved.png
+frames 4
+expect calm
+quit
+";
+
+#[test]
+fn a_picture_hangs_in_the_window_in_its_own_colours() {
+    let Some(display) = Display::open() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let colours = [[220, 90, 60], [40, 130, 200]];
+    let halves = RgbImage::from_fn(96, 96, |x, _| image::Rgb(colours[usize::from(x >= 48)]));
+    halves.save(folder.path().join("halves.png")).unwrap();
+    write("halves.ron", "(version: 1, source: \"halves.png\", resolution: 24, fidelity: 1.0, keys: 2)");
+    write("scenario.txt", PICTURE_SCENARIO);
+    let output = display.play(folder.path(), &["halves.png", "--script", "scenario.txt", "--size", "1280,720"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    let open = |name: &str| image::open(folder.path().join(name)).unwrap().to_rgb8();
+    let (rest, moved) = (open("rest.png"), open("moved.png"));
+    let is = |picture: &RgbImage, x: u32, colour: [u8; 3]| {
+        let found = picture.get_pixel(x, 360).0;
+        (0..3).all(|c| found[c].abs_diff(colour[c]) <= 2)
+    };
+    for (x, colour) in [(500, colours[0]), (780, colours[1])] {
+        assert!(is(&rest, x, colour), "{:?} at {x}", rest.get_pixel(x, 360));
+    }
+    // Where the halves meet has been dragged to the right. Sabotage: there the picture at rest has the other colour.
+    assert!(is(&moved, 660, colours[0]) && !is(&rest, 660, colours[0]), "{:?}", moved.get_pixel(660, 360));
+    let saved = homunculus::scene::Scene::load(&folder.path().join("painted.ron")).unwrap();
+    assert_eq!(saved.strokes.len(), 1);
+    assert!(open("warped.png").width() >= 96 && folder.path().join("growth.gif").is_file());
+}
+
 #[test]
 fn sabotage_another_picture_is_seen() {
     if !kept("done").is_file() {

@@ -37,7 +37,7 @@ fn open(resolution: u32, value: f32) -> (Session, Arc<Boundary>) {
     let session = Session::start().unwrap();
     let boundary = hand();
     let importance = stack(&boundary, value);
-    session.open(Subject { boundary: boundary.clone(), importance, settings: settings(resolution) });
+    session.open(Subject { boundary: boundary.clone(), importance, picture: None, settings: settings(resolution) });
     (session, boundary)
 }
 
@@ -164,9 +164,19 @@ fn settings_and_subjects_replace_each_other() {
     session.set_settings(settings(16));
     let done = wait(&session, |s| is_at_rest(s) && s.lattice.as_ref().is_some_and(|l| l.summary.resolution == 16));
     assert_eq!(done.phase, Phase::Done);
-    session.open(Subject { boundary: boundary.clone(), importance: stack(&boundary, 1.5), settings: settings(7) });
+    session.open(Subject {
+        boundary: boundary.clone(),
+        importance: stack(&boundary, 1.5),
+        picture: None,
+        settings: settings(7),
+    });
     let failed = wait(&session, |s| s.phase == Phase::Failed);
     assert!(failed.error.as_ref().unwrap().contains("resolution 7"), "{:?}", failed.error);
-    session.open(Subject { boundary: boundary.clone(), importance: stack(&boundary, 1.5), settings: settings(16) });
+    session.open(Subject {
+        boundary: boundary.clone(),
+        importance: stack(&boundary, 1.5),
+        picture: None,
+        settings: settings(16),
+    });
     wait(&session, |s| s.phase == Phase::Done);
 }

@@ -1,4 +1,4 @@
-//! `homunculus warp` of a picture: from a scene to a warped picture and its growth.
+//! Pictures on the command line: from a scene to a warped picture, its growth, and what is filmed of it.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -9,8 +9,12 @@ use glam::{DVec2, Vec3A};
 use image::Rgba;
 
 use super::load::LoadedPicture;
+#[cfg(feature = "record")]
+use super::load::{self, PictureSource};
 use super::options::{Colour, WarpOptions};
 use super::outputs::Outputs;
+#[cfg(feature = "record")]
+use super::scene_options::SceneOptions;
 use super::{Verdict, cancel, progress, say, warp};
 use crate::boundary::Boundary;
 use crate::export::report::{AreaReport, Report};
@@ -18,6 +22,7 @@ use crate::export::{self, GrowthFrame, write_atomically};
 use crate::film::blend_places;
 use crate::importance;
 use crate::picture::animate::{self, Frame};
+use crate::picture::importance::Field;
 use crate::picture::render::{Canvas, Painter, mark};
 use crate::picture::{FlatMesh, Picture, areas};
 use crate::scene::Scene;
@@ -35,46 +40,73 @@ pub(super) const CROSSING: Rgba<u8> = Rgba([230, 0, 0, 255]);
 
 /// Warps, writes and says how it went.
 pub(super) fn run(options: &WarpOptions, scene: &Scene, outputs: &Outputs, loaded: LoadedPicture) -> Result<Verdict> {
-    let LoadedPicture { picture, field, flat, settings, warnings } = loaded;
-    let watcher = progress::watcher(options.scene.quiet);
-    let solved = schedule::solve_domain(Domain::picture(Arc::new(flat), settings.clone()), &watcher);
-    watcher.finish();
-    let solved = solved?;
+    let solved = solve(&loaded, options.scene.quiet)?;
     if cancel::asked() {
         return Err(Error::Cancelled);
     }
-    let drawn = Drawn::new(&picture, &solved);
-    let areas = areas(&field, &picture, &drawn.mesh, drawn.last());
-    let cell = solved.complex.grid.cell_size.powi(2);
-    let area_report = AreaReport::of(&areas, &field, &picture.domain, cell);
-    let mut report = Report::of(scene, &settings, field.clamped, &solved.outcome, warnings);
-    report.take_areas(area_report);
-    let written = write(options, scene, outputs, &picture, &solved, &drawn, &report)?;
+    let last = solved.film.keyframes().last().map_or(&[][..], |last| &last.positions);
+    let crossings = crossings(&solved, last, f64::from(loaded.picture.size.y));
+    let drawn = Drawn::new(&loaded.picture, &solved.boundary, &solved.outcome.frames);
+    let report = report(scene, &loaded, &solved, &drawn);
+    let written = write(options, scene, outputs, &solved, &drawn, &crossings, &report)?;
     if !options.scene.quiet {
         say(&warp::summary(&report, &written));
     }
     Ok(if report.certified() { Verdict::Done } else { Verdict::NotCertified })
 }
 
-/// The mesh a picture is drawn on, and its states, in pixels with y downwards.
-pub(super) struct Drawn {
-    pub mesh: FlatMesh,
-    /// By rising λ.
-    states: Vec<(f32, Vec<DVec2>)>,
-    pub height: f64,
+/// A picture that has grown, as it is filmed, and what came of it.
+#[cfg(feature = "record")]
+pub(super) fn subject(
+    scene: &Scene,
+    options: &SceneOptions,
+    source: PictureSource,
+) -> Result<(crate::record::Subject, Report)> {
+    let loaded = load::load_picture(scene, options, source)?;
+    let solved = solve(&loaded, options.quiet)?;
+    let report = {
+        let drawn = Drawn::new(&loaded.picture, &solved.boundary, &solved.outcome.frames);
+        report(scene, &loaded, &solved, &drawn)
+    };
+    let boundary = (*solved.boundary).clone().with_texture(&loaded.picture.name, loaded.picture.body_png()?);
+    let (subject, _) = crate::record::Subject::new(Arc::new(boundary), solved);
+    Ok((subject, report))
 }
 
-impl Drawn {
-    pub fn new(picture: &Picture, solved: &Solved) -> Self {
+fn solve(loaded: &LoadedPicture, quiet: bool) -> Result<Solved> {
+    let watcher = progress::watcher(quiet);
+    let domain = Domain::picture(Arc::new(loaded.flat.clone()), loaded.settings.clone());
+    let solved = schedule::solve_domain(domain, &watcher);
+    watcher.finish();
+    solved
+}
+
+fn report(scene: &Scene, loaded: &LoadedPicture, solved: &Solved, drawn: &Drawn) -> Report {
+    let LoadedPicture { field, settings, warnings, .. } = loaded;
+    let mut report = Report::of(scene, settings, field.clamped, &solved.outcome, warnings.clone());
+    report.take_areas(drawn.areas(field, solved.complex.grid.cell_size));
+    report
+}
+
+/// A picture in the states of its growth, to be written.
+pub(super) struct Drawn<'a> {
+    picture: &'a Picture,
+    boundary: &'a Boundary,
+    frames: &'a [schedule::Frame],
+    /// What it is drawn on, in pixels with y downwards.
+    pub mesh: FlatMesh,
+    /// By rising λ, in pixels with y downwards.
+    states: Vec<(f32, Vec<DVec2>)>,
+}
+
+impl<'a> Drawn<'a> {
+    /// Of the mesh the engine drew it on, and its states.
+    pub fn new(picture: &'a Picture, boundary: &'a Boundary, frames: &'a [schedule::Frame]) -> Self {
         let height = f64::from(picture.size.y);
         let places = |positions: &[glam::DVec3]| positions.iter().map(|p| DVec2::new(p.x, height - p.y)).collect();
-        let Boundary { positions, triangles, .. } = &*solved.boundary;
-        let frames = solved.outcome.frames.iter();
-        Self {
-            mesh: FlatMesh { rest: places(positions), triangles: triangles.clone() },
-            states: frames.map(|frame| (frame.lambda, places(&frame.positions))).collect(),
-            height,
-        }
+        let mesh = FlatMesh { rest: places(&boundary.positions), triangles: boundary.triangles.clone() };
+        let states = frames.iter().map(|frame| (frame.lambda, places(&frame.positions))).collect();
+        Self { picture, boundary, frames, mesh, states }
     }
 
     pub fn last(&self) -> &[DVec2] {
@@ -90,6 +122,67 @@ impl Drawn {
             _ => places.clone(),
         }
     }
+
+    /// Asked and achieved areas of the field's regions; `cell_size` in pixels.
+    pub fn areas(&self, field: &Field, cell_size: f64) -> Option<AreaReport> {
+        let areas = areas(field, self.picture, &self.mesh, self.last());
+        AreaReport::of(&areas, field, &self.picture.domain, cell_size.powi(2))
+    }
+
+    /// The warped picture, `scale` times as fine as it was; `crossings` are marked.
+    pub fn write_picture(&self, path: &Path, scale: f64, crossings: &[(DVec2, DVec2)]) -> Result<()> {
+        let canvas = Canvas::around(self.picture, &self.mesh, [self.last()], scale)?;
+        let mut pixels = Painter::new(self.picture, &self.mesh).render(self.last(), &canvas);
+        // Thick enough to be seen in a large picture.
+        let width = f64::from(canvas.size.max_element()) / 250.0;
+        mark(&mut pixels, &canvas, crossings, width.max(2.0), CROSSING);
+        write_atomically(path, |file| pixels.write_png(file, self.picture.profile.as_deref()))
+    }
+
+    /// The growth in `seconds` as a textured mesh or an animated picture, by the file's extension. `colours`: `[vertices]`
+    /// of the mesh. Ends early, and leaves nothing, when `stopped` says so.
+    pub fn write_growth(
+        &self,
+        path: &Path,
+        scale: f64,
+        seconds: f32,
+        colours: Option<&[[f32; 3]]>,
+        stopped: &(dyn Fn() -> bool + Sync),
+    ) -> Result<()> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        if extension == "glb" {
+            let mut texture = Vec::new();
+            let written = self.picture.pixels.write_png(&mut texture, self.picture.profile.as_deref());
+            written.map_err(|e| Error::writing(path, e))?;
+            let boundary = self.boundary.clone().with_texture(&self.picture.name, texture);
+            let frames: Vec<_> =
+                self.frames.iter().map(|f| GrowthFrame { lambda: f.lambda, positions: &f.positions }).collect();
+            return export::growth(&boundary, &frames, colours, seconds, path);
+        }
+        let states = self.states.iter().map(|(_, places)| places.as_slice());
+        let canvas = Canvas::around(self.picture, &self.mesh, states, scale)?;
+        let painter = Painter::new(self.picture, &self.mesh);
+        let steps = (seconds * FRAMES_PER_SECOND).round().max(1.0) as u32;
+        let seconds = f64::from(seconds);
+        let frame = |k: u32| {
+            if stopped() {
+                return Err(io::Error::new(io::ErrorKind::Interrupted, "cancelled"));
+            }
+            let places = self.at(k as f32 / steps as f32);
+            let pixels = painter.render(&places, &canvas).into_eight();
+            let time = if k == steps { seconds * f64::from(HOLD) } else { seconds / f64::from(steps) };
+            Ok(Frame { pixels, delay: Duration::from_secs_f64(time) })
+        };
+        let written = write_atomically(path, |file| match extension.as_str() {
+            "gif" => {
+                let samples = [0, steps / 2, steps].map(|k| frame(k).map(|f| f.pixels));
+                let samples = samples.into_iter().collect::<io::Result<Vec<_>>>()?;
+                animate::gif(file, &samples.iter().collect::<Vec<_>>(), (0..=steps).map(frame))
+            }
+            _ => animate::apng(file, steps + 1, (0..=steps).map(frame)),
+        });
+        if stopped() { Err(Error::Cancelled) } else { written }
+    }
 }
 
 /// Writes what was ordered, each file whole or not at all. Returns where.
@@ -97,27 +190,21 @@ fn write(
     options: &WarpOptions,
     scene: &Scene,
     outputs: &Outputs,
-    picture: &Picture,
     solved: &Solved,
     drawn: &Drawn,
+    crossings: &[(DVec2, DVec2)],
     report: &Report,
 ) -> Result<Vec<PathBuf>> {
     let scale = options.scale.unwrap_or(1.0);
-    let painter = Painter::new(picture, &drawn.mesh);
     let mut written = Vec::new();
     if let Some(path) = &outputs.mesh {
-        let canvas = Canvas::around(picture, &drawn.mesh, [drawn.last()], scale)?;
-        let mut pixels = painter.render(drawn.last(), &canvas);
-        let last = solved.film.keyframes().last().map_or(&[][..], |last| &last.positions);
-        let crossings = crossings(solved, last, drawn.height);
-        // Thick enough to be seen in a large picture.
-        let width = f64::from(canvas.size.max_element()) / 250.0;
-        mark(&mut pixels, &canvas, &crossings, width.max(2.0), CROSSING);
-        write_atomically(path, |file| pixels.write_png(file, picture.profile.as_deref()))?;
+        drawn.write_picture(path, scale, crossings)?;
         written.push(path.clone());
     }
     if let Some(path) = &outputs.growth {
-        growth(options, path, picture, solved, drawn, &painter)?;
+        let colours = importance::colours(&solved.outcome.importance);
+        let colours = (options.colour == Some(Colour::Importance)).then_some(colours.as_slice());
+        drawn.write_growth(path, scale, options.seconds, colours, &cancel::asked)?;
         written.push(path.clone());
     }
     written.extend(outputs.write_accounts(scene, report)?);
@@ -138,48 +225,4 @@ pub(super) fn crossings(solved: &Solved, nodes: &[Vec3A], height: f64) -> Vec<(D
             (place(a), place(b))
         })
         .collect()
-}
-
-/// The growth as a textured mesh or an animated picture, by the file's extension.
-fn growth(
-    options: &WarpOptions,
-    path: &Path,
-    picture: &Picture,
-    solved: &Solved,
-    drawn: &Drawn,
-    painter: &Painter,
-) -> Result<()> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if extension == "glb" {
-        let colours = importance::colours(&solved.outcome.importance);
-        let colours = (options.colour == Some(Colour::Importance)).then_some(colours.as_slice());
-        let mut texture = Vec::new();
-        picture.pixels.write_png(&mut texture, picture.profile.as_deref()).map_err(|e| Error::writing(path, e))?;
-        let boundary = (*solved.boundary).clone().with_texture(&picture.name, texture);
-        let frames: Vec<_> =
-            solved.outcome.frames.iter().map(|f| GrowthFrame { lambda: f.lambda, positions: &f.positions }).collect();
-        return export::growth(&boundary, &frames, colours, options.seconds, path);
-    }
-    let states = drawn.states.iter().map(|(_, places)| places.as_slice());
-    let canvas = Canvas::around(picture, &drawn.mesh, states, options.scale.unwrap_or(1.0))?;
-    let steps = (options.seconds * FRAMES_PER_SECOND).round().max(1.0) as u32;
-    let seconds = f64::from(options.seconds);
-    let frame = |k: u32| {
-        if cancel::asked() {
-            return Err(io::Error::new(io::ErrorKind::Interrupted, "cancelled"));
-        }
-        let places = drawn.at(k as f32 / steps as f32);
-        let pixels = painter.render(&places, &canvas).into_eight();
-        let time = if k == steps { seconds * f64::from(HOLD) } else { seconds / f64::from(steps) };
-        Ok(Frame { pixels, delay: Duration::from_secs_f64(time) })
-    };
-    let written = write_atomically(path, |file| match extension.as_str() {
-        "gif" => {
-            let samples = [0, steps / 2, steps].map(|k| frame(k).map(|f| f.pixels));
-            let samples = samples.into_iter().collect::<io::Result<Vec<_>>>()?;
-            animate::gif(file, &samples.iter().collect::<Vec<_>>(), (0..=steps).map(frame))
-        }
-        _ => animate::apng(file, steps + 1, (0..=steps).map(frame)),
-    });
-    if cancel::asked() { Err(Error::Cancelled) } else { written }
 }

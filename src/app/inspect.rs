@@ -3,13 +3,17 @@
 use glam::DVec3;
 use serde::Serialize;
 
+use super::load::PictureSource;
 use super::options::InspectOptions;
+use super::scene_options::PICTURE_RESOLUTION;
 use super::{Verdict, load, say};
 use crate::boundary::{Attribute, Boundary};
 use crate::diagnostics::human_bytes;
 use crate::export::report::{DomainReport, InputReport};
-use crate::scene::check_resolution;
-use crate::schedule;
+use crate::picture::Pixels;
+use crate::scene::{Source, check_flat_resolution, check_resolution};
+use crate::schedule::{self, DomainSummary, InputSummary};
+use crate::voxel::Flat;
 use crate::{Error, Result};
 
 /// What `--json` prints.
@@ -18,14 +22,34 @@ struct Inspection {
     source: String,
     input: InputReport,
     extents: Extents,
+    /// Of a picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    picture: Option<PictureReport>,
     attributes: Vec<AttributeRange>,
-    /// Whether it has texture coordinates.
+    /// Whether it has texture coordinates; a picture's are the mesh's that it is drawn on.
     uv: bool,
     /// Whether it has vertex colours.
     colours: bool,
     domain: DomainReport,
     warnings: Vec<String>,
     version: &'static str,
+}
+
+/// What is in a picture.
+#[derive(Debug, Serialize)]
+struct PictureReport {
+    /// Pixels across.
+    width: u32,
+    /// Pixels down.
+    height: u32,
+    /// Bits of a channel: 8 or 16.
+    bits: u32,
+    /// Pixels of the body: opaque enough, and not background.
+    domain_pixels: usize,
+    /// Whether a colour profile goes along.
+    has_profile: bool,
+    /// Names of the regions a built-in picture has.
+    regions: Vec<String>,
 }
 
 /// The box around the vertices, in source units.
@@ -45,21 +69,23 @@ struct AttributeRange {
     not_finite: usize,
 }
 
+/// Cells along the longest side of a body where nothing is said, as for `warp`.
+const RESOLUTION: u32 = 64;
+
 /// Looks and tells.
 pub(super) fn run(options: &InspectOptions) -> Result<Verdict> {
-    check_resolution(options.resolution)?;
-    let boundary = load::open(&options.source)?;
-    let (input, domain) = schedule::inspect(&boundary, options.resolution)?;
-    let inspection = Inspection {
-        source: options.source.to_string(),
-        input: (&input).into(),
-        extents: Extents::of(&boundary),
-        attributes: boundary.attributes.iter().map(AttributeRange::of).collect(),
-        uv: boundary.vertex_uvs().is_some_and(|uvs| uvs.iter().any(Option::is_some)),
-        colours: boundary.base_colours().is_some(),
-        domain: (&domain).into(),
-        warnings: boundary.warnings.clone(),
-        version: env!("CARGO_PKG_VERSION"),
+    let inspection = match load::picture_source(&options.source)? {
+        Some(source) => of_picture(options, source)?,
+        None if options.background.is_some() => {
+            return Err(Error::input("--background is for pictures, and this is a mesh; leave it out"));
+        }
+        None => {
+            let resolution = options.resolution.unwrap_or(RESOLUTION);
+            check_resolution(resolution)?;
+            let boundary = load::open(&options.source)?;
+            let (input, domain) = schedule::inspect(&boundary, resolution)?;
+            Inspection::of(&options.source, &boundary, &input, &domain)
+        }
     };
     let text = if options.json {
         serde_json::to_string_pretty(&inspection).map_err(|e| Error::Fault(format!("inspection to JSON: {e}")))?
@@ -70,7 +96,43 @@ pub(super) fn run(options: &InspectOptions) -> Result<Verdict> {
     Ok(Verdict::Done)
 }
 
+/// Looks at a picture.
+fn of_picture(options: &InspectOptions, source: PictureSource) -> Result<Inspection> {
+    let resolution = options.resolution.unwrap_or(PICTURE_RESOLUTION);
+    check_flat_resolution(resolution)?;
+    let name = options.source.to_string();
+    let (picture, own) = source.read(&name, options.background.as_deref())?;
+    let flat = Flat { name, size: picture.size, inside: picture.domain.clone(), ..Flat::default() };
+    let (boundary, input, domain) = schedule::inspect_picture(&flat, resolution)?;
+    let regions = own.and_then(|field| field.regions).map_or_else(Vec::new, |regions| regions.names);
+    let report = PictureReport {
+        width: picture.size.x,
+        height: picture.size.y,
+        bits: if matches!(picture.pixels, Pixels::Sixteen(_)) { 16 } else { 8 },
+        domain_pixels: picture.domain_area(),
+        has_profile: picture.profile.is_some(),
+        regions,
+    };
+    let inspection = Inspection::of(&options.source, &boundary, &input, &domain);
+    Ok(Inspection { picture: Some(report), warnings: picture.warnings, ..inspection })
+}
+
 impl Inspection {
+    fn of(source: &Source, boundary: &Boundary, input: &InputSummary, domain: &DomainSummary) -> Self {
+        Self {
+            source: source.to_string(),
+            input: input.into(),
+            extents: Extents::of(boundary),
+            picture: None,
+            attributes: boundary.attributes.iter().map(AttributeRange::of).collect(),
+            uv: boundary.vertex_uvs().is_some_and(|uvs| uvs.iter().any(Option::is_some)),
+            colours: boundary.base_colours().is_some(),
+            domain: domain.into(),
+            warnings: boundary.warnings.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+
     fn to_lines(&self) -> Vec<String> {
         let (input, domain) = (&self.input, &self.domain);
         let yes = |is: bool| if is { "yes" } else { "no" };
@@ -78,29 +140,49 @@ impl Inspection {
         let (min, max) = (self.extents.min, self.extents.max);
         let extents = [0, 1, 2].map(|i| short(max[i] - min[i])).join(" × ");
         let [from, to] = [min, max].map(|corner| corner.map(short).join(", "));
-        let mut lines = vec![
-            self.source.clone(),
-            line("  vertices", input.vertices.to_string()),
-            line("  triangles", input.triangles.to_string()),
-            line("  components", input.components.to_string()),
-            line("  boundary loops", input.boundary_loops.to_string()),
-            line("  self-intersections", input.self_intersections.to_string()),
-            line("  extents", format!("{extents}, from ({from}) to ({to})")),
-            line("  texture coords", yes(self.uv).into()),
-            line("  vertex colours", yes(self.colours).into()),
-            line("  attributes", if self.attributes.is_empty() { "none".into() } else { String::new() }),
-        ];
-        lines.extend(self.attributes.iter().map(|attribute| format!("    {attribute}")));
+        let mut lines = vec![self.source.clone()];
+        if let Some(picture) = &self.picture {
+            let all = f64::from(picture.width) * f64::from(picture.height);
+            let share = 100.0 * picture.domain_pixels as f64 / all;
+            lines.extend([
+                line("  pixels", format!("{} × {}, {} bits a channel", picture.width, picture.height, picture.bits)),
+                line("  body", format!("{} pixels, {} % of all", picture.domain_pixels, short(share))),
+                line("  components", input.components.to_string()),
+                line("  outlines", input.boundary_loops.to_string()),
+                line("  colour profile", yes(picture.has_profile).into()),
+            ]);
+            let regions = match &picture.regions[..] {
+                [] => "none".into(),
+                names => format!("{}: {}", names.len(), names.join(", ")),
+            };
+            lines.push(line("  regions", regions));
+        } else {
+            lines.extend([
+                line("  vertices", input.vertices.to_string()),
+                line("  triangles", input.triangles.to_string()),
+                line("  components", input.components.to_string()),
+                line("  boundary loops", input.boundary_loops.to_string()),
+                line("  self-intersections", input.self_intersections.to_string()),
+                line("  extents", format!("{extents}, from ({from}) to ({to})")),
+                line("  texture coords", yes(self.uv).into()),
+                line("  vertex colours", yes(self.colours).into()),
+                line("  attributes", if self.attributes.is_empty() { "none".into() } else { String::new() }),
+            ]);
+            lines.extend(self.attributes.iter().map(|attribute| format!("    {attribute}")));
+        }
+        let unit = if self.picture.is_some() { " pixels" } else { "" };
         lines.push(format!("voxelized at {} cells along the longest axis", domain.resolution));
         lines.extend([
-            line("  cell size", short(domain.cell_size)),
+            line("  cell size", format!("{}{unit}", short(domain.cell_size))),
             line("  cells", domain.cells.to_string()),
             line("  nodes", domain.nodes.to_string()),
             line("  edges", domain.edges.to_string()),
             line("  elements", domain.elements.to_string()),
-            line("  suspected welds", domain.suspected_welds.to_string()),
-            line("  memory to warp", format!("about {}", human_bytes(domain.memory_estimate_bytes as f64))),
         ]);
+        if self.picture.is_none() {
+            lines.push(line("  suspected welds", domain.suspected_welds.to_string()));
+        }
+        lines.extend([line("  memory to warp", format!("about {}", human_bytes(domain.memory_estimate_bytes as f64)))]);
         lines.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
         lines
     }

@@ -9,6 +9,7 @@ use crate::boundary::{self, Attribute, Boundary, Regions};
 use crate::gallery::human::read_values;
 use crate::gallery::picture::PictureScene;
 use crate::importance::{Layer, Stack};
+use crate::paint::Ground;
 use crate::picture::importance::Field;
 use crate::picture::{self, Cut, Picture};
 use crate::scene::{Scene, Source};
@@ -64,11 +65,11 @@ pub(super) enum PictureSource {
     BuiltIn(Box<PictureScene>),
 }
 
-/// The picture a scene's source is, if it is one.
-pub(super) fn picture_source(scene: &Scene) -> Result<Option<PictureSource>> {
-    let path = match &scene.source {
+/// The picture a source is, if it is one; a file is told by its content.
+pub(super) fn picture_source(source: &Source) -> Result<Option<PictureSource>> {
+    let path = match source {
         Source::File(path) => path,
-        Source::Gallery(name) if scene.source.is_picture() => {
+        Source::Gallery(name) if source.is_picture() => {
             return gallery::picture::open(name).map(|scene| Some(PictureSource::BuiltIn(Box::new(scene))));
         }
         Source::Gallery(_) => return Ok(None),
@@ -89,27 +90,34 @@ pub(super) fn picture_source(scene: &Scene) -> Result<Option<PictureSource>> {
 /// By so many bytes a picture is recognised.
 const MAGIC_BYTES: u64 = 64;
 
+impl PictureSource {
+    /// The picture, cut out of its background (`COLOUR,TOLERANCE`), and the importance a built-in one brings.
+    pub fn read(self, name: &str, background: Option<&str>) -> Result<(Picture, Option<Field>)> {
+        let background = background.map(str::parse).transpose();
+        let background = background.map_err(|sentence: String| Error::input(format!("--background: {sentence}")))?;
+        Ok(match self {
+            Self::Bytes(bytes) => (picture::read_bytes(name, &bytes, &Cut { background, ..Cut::default() })?, None),
+            Self::BuiltIn(built_in) => (built_in.picture, Some(built_in.field)),
+        })
+    }
+}
+
 /// Reads what a scene of a picture names; as [`load`].
 pub(super) fn load_picture(scene: &Scene, options: &SceneOptions, source: PictureSource) -> Result<LoadedPicture> {
     begin(options)?;
-    let background = scene.background.as_deref().map(str::parse).transpose();
-    let background = background.map_err(|sentence: String| Error::input(format!("--background: {sentence}")))?;
     let name = scene.source.to_string();
-    let (picture, own) = match source {
-        PictureSource::Bytes(bytes) => {
-            (picture::read_bytes(&name, &bytes, &Cut { background, ..Cut::default() })?, None)
-        }
-        PictureSource::BuiltIn(built_in) => (built_in.picture, Some(built_in.field)),
-    };
-    let layers = scene.shown_layers().iter().map(picture_layer).collect::<Result<Vec<_>>>()?;
-    // Importance that is given takes the place of a built-in picture's own.
-    let (field, is_own) = match own.filter(|_| layers.is_empty()) {
-        Some(field) => (field, true),
-        None => (Field::load(&layers, scene.base, scene.clamp, &picture, Path::new(""))?, false),
+    let (picture, own) = source.read(&name, scene.background.as_deref())?;
+    let is_said = own.is_some() || !scene.shown_layers().is_empty() || !scene.strokes.is_empty();
+    let field = picture_field(scene, &picture, own.as_ref())?;
+    let (picture, field) = if scene.strokes.is_empty() {
+        (picture, field)
+    } else {
+        let painted = paint::over_picture(Ground::new(&name, picture, None, field)?, &scene.strokes)?;
+        ((*painted.ground.picture).clone(), painted.field())
     };
     let mut warnings = picture.warnings.clone();
     warnings.extend_from_slice(&field.warnings);
-    if layers.is_empty() && !is_own {
+    if !is_said {
         warnings.push("no importance was given, so the picture stays as it is; see --sphere and --regions".into());
     }
     tell(&warnings, options);
@@ -117,6 +125,15 @@ pub(super) fn load_picture(scene: &Scene, options: &SceneOptions, source: Pictur
     let flat =
         Flat { name, size: picture.size, inside: picture.domain.clone(), importance: field.values.clone(), regions };
     Ok(LoadedPicture { picture, field, flat, settings: settings(scene, options), warnings })
+}
+
+/// What a scene's layers say of a picture. Importance that is given takes the place of a built-in picture's own.
+pub(super) fn picture_field(scene: &Scene, picture: &Picture, own: Option<&Field>) -> Result<Field> {
+    let layers = scene.shown_layers().iter().map(picture_layer).collect::<Result<Vec<_>>>()?;
+    match own.filter(|_| layers.is_empty()) {
+        Some(field) => Ok(field.clone()),
+        None => Field::load(&layers, scene.base, scene.clamp, picture, Path::new("")),
+    }
 }
 
 /// A layer as a picture takes it.

@@ -9,13 +9,13 @@ use serde::Serialize;
 use super::load::{self, Loaded};
 use super::outputs::{check_extension, check_places};
 use super::scene_options::{SceneOptions, number};
-use super::{Verdict, note, progress, say};
+use super::{Verdict, flat, note, progress, say};
 use crate::diagnostics::human_bytes;
 use crate::export::report::Report;
 use crate::importance::Layer;
 use crate::record::{self, Account, Camera, Draft, Settings, Subject, sidecar};
 use crate::scene::Scene;
-use crate::{Result, schedule};
+use crate::{Error, Result, schedule};
 
 /// Film the growth, or take a picture of it
 ///
@@ -29,7 +29,9 @@ Examples:
   homunculus record head.ron -o head.gif --size 640x480 --ping-pong --turntable 1
   homunculus record body.obj --sphere 0.7,1.4,0,0.2,2.5 -o body.apng --transparent --view plain
   homunculus record gallery:hand -o compare.mp4 --view compare --fps 60
-  homunculus record gallery:hand -o hand.png --still 1 --size 7680x4320")]
+  homunculus record gallery:hand -o hand.png --still 1 --size 7680x4320
+  homunculus record map.png --regions ids.png --values people.csv --per-area -o cartogram.mp4 --title 'Where people live'
+  homunculus record gallery:crocodile -o both.mp4 --view compare")]
 pub struct RecordOptions {
     /// What to warp and how.
     #[command(flatten)]
@@ -61,10 +63,11 @@ pub struct RecordOptions {
     #[arg(long, value_name = "LAMBDA", help_heading = "Film", value_parser = number, allow_negative_numbers = true)]
     pub still: Option<f64>,
 
-    /// What to show
-    #[arg(long, help_heading = "Picture", value_enum, default_value = "importance")]
-    pub view: ViewName,
-    /// Degrees to the side (0: from +Z, 90: from +X), degrees from above, and how much nearer than all fits [default: 20,8,1]
+    /// What to show [default: importance, of a picture plain]
+    #[arg(long, help_heading = "Picture", value_enum)]
+    pub view: Option<ViewName>,
+    /// Degrees to the side (0: from +Z, 90: from +X), degrees from above, and how much nearer than all fits [default: 20,8,1];
+    /// a picture is looked at straight on: 0,0,ZOOM
     #[arg(long, value_name = "YAW,PITCH[,ZOOM]", help_heading = "Picture", value_parser = camera, allow_hyphen_values = true)]
     pub camera: Option<Camera>,
     /// Turns around the vertical axis over the film; negative turns the other way
@@ -134,9 +137,18 @@ impl RecordOptions {
     /// What is asked of the film.
     ///
     /// # Errors
-    /// A value out of range.
-    fn settings(&self) -> Result<Settings> {
+    /// A value out of range; a turn around a picture, which would show its edge.
+    fn settings(&self, is_picture: bool) -> Result<Settings> {
         let [width, height] = self.size;
+        let straight = Camera { yaw: 0.0, pitch: 0.0, zoom: 1.0 };
+        let usual = if is_picture { (straight, ViewName::Plain) } else { (Camera::default(), ViewName::Importance) };
+        let (camera, view) = (self.camera.unwrap_or(usual.0), self.view.unwrap_or(usual.1));
+        if is_picture && self.turntable != 0.0 {
+            return Err(Error::input("--turntable is for bodies: a picture is looked at straight on; leave it out"));
+        }
+        if is_picture && (camera.yaw, camera.pitch) != (0.0, 0.0) {
+            return Err(Error::input("a picture is looked at straight on; give --camera 0,0,ZOOM or leave it out"));
+        }
         Settings::new(Draft {
             seconds: self.seconds,
             fps: self.fps,
@@ -151,8 +163,8 @@ impl RecordOptions {
             ping_pong: self.ping_pong,
             hold: self.hold,
             turntable: self.turntable as f32,
-            camera: self.camera.unwrap_or_default(),
-            view: match self.view {
+            camera,
+            view: match view {
                 ViewName::Importance => record::View::Importance,
                 ViewName::Plain => record::View::Plain,
                 ViewName::Classic => record::View::Classic,
@@ -170,22 +182,22 @@ impl RecordOptions {
 /// Warps, films and says how it went.
 pub(super) fn run(order: RecordOrder) -> Result<Verdict> {
     let options = &order.options;
-    let settings = options.settings()?;
     let scene = options.scene.scene(&order.layers)?;
+    let source = load::picture_source(&scene.source)?;
+    let settings = options.settings(source.is_some())?;
+    if source.is_none() && scene.background.is_some() {
+        return Err(Error::input("--background is for pictures, and this is a mesh; leave it out"));
+    }
     check_outputs(options, &settings, &scene)?;
     let adapter = record::check(&settings, &options.output)?;
     let quiet = options.scene.quiet;
     if adapter.is_software && !quiet {
         note(&format!("drawing with {} (no GPU): a few frames per second", adapter.name));
     }
-    let Loaded { boundary, stack, settings: how, warnings } = load::load(&scene, &options.scene)?;
-
-    let watcher = progress::watcher(quiet);
-    let solved = schedule::solve(&boundary, &stack, &how, &watcher);
-    watcher.finish();
-    let (mut subject, outcome) = Subject::new(Arc::new(boundary), solved?);
-    let report = Report::of(&scene, &how, stack.clamped(), &outcome, warnings);
-
+    let (mut subject, report) = match source {
+        Some(source) => flat::subject(&scene, &options.scene, source)?,
+        None => body(&scene, &options.scene)?,
+    };
     let watcher = progress::watcher(quiet);
     let take = record::shoot(&mut subject, &settings, &options.output, &watcher, |_| {});
     watcher.finish();
@@ -207,6 +219,16 @@ pub(super) fn run(order: RecordOrder) -> Result<Verdict> {
         say(&summary(&account, written.iter().chain(&options.scene.save_scene)));
     }
     Ok(if account.certified { Verdict::Done } else { Verdict::NotCertified })
+}
+
+/// A body that has grown, and what came of it.
+fn body(scene: &Scene, options: &SceneOptions) -> Result<(Subject, Report)> {
+    let Loaded { boundary, stack, settings, warnings } = load::load(scene, options)?;
+    let watcher = progress::watcher(options.quiet);
+    let solved = schedule::solve(&boundary, &stack, &settings, &watcher);
+    watcher.finish();
+    let (subject, outcome) = Subject::new(Arc::new(boundary), solved?);
+    Ok((subject, Report::of(scene, &settings, stack.clamped(), &outcome, warnings)))
 }
 
 /// Whether all files can come to lie where they are wanted.

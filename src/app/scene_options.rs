@@ -126,7 +126,7 @@ impl SceneOptions {
 }
 
 /// Cells along the longest side of a picture where nothing is said: about as fine as its detail, in a second or two.
-const PICTURE_RESOLUTION: u32 = 128;
+pub(super) const PICTURE_RESOLUTION: u32 = 128;
 
 /// A scene with nothing but a source; a built-in one comes with settings that suit it.
 pub(super) fn fresh(source: &Source) -> Draft {

@@ -18,7 +18,7 @@ use crate::{Error, Result};
 pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     let options = &order.options;
     let scene = order.scene()?;
-    if let Some(source) = load::picture_source(&scene)? {
+    if let Some(source) = load::picture_source(&scene.source)? {
         let outputs = Outputs::of(options, &scene, true)?;
         let loaded = load::load_picture(&scene, &options.scene, source)?;
         return flat::run(options, &scene, &outputs, loaded);

@@ -174,12 +174,16 @@ impl Growth {
     }
 
     /// Plans the way between two sizes that differ by at most `ln_change` in the logarithm: one keyframe, at its end.
-    pub fn change(ln_change: f32) -> Self {
-        let count = (ln_change / LN_SIZE_PER_STEP).ceil().max(1.0) as usize;
+    pub fn change(dimension: Dimension, ln_change: f32) -> Self {
+        let pace = match dimension {
+            Dimension::Two => PICTURE,
+            Dimension::Three => BODY,
+        };
+        let count = (ln_change / pace.ln_size).ceil().max(1.0) as usize;
         let steps = (1..=count).map(|k| k as f32 / count as f32).collect();
         Self {
             steps,
-            iterations: ITERATIONS_PER_STEP,
+            iterations: pace.iterations,
             keys: 1,
             step: 0,
             iteration: 0,

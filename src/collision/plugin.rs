@@ -13,7 +13,7 @@ use crate::{
     diagnostics::Stopwatch,
     edge::{CHUNK, plugin::LinearSolution},
     film::blend,
-    importance::{plugin::Importance, smoothed},
+    importance::{asked_sizes, plugin::Importance, smoothed},
     schedule::{Domain, Solve, Stage},
     voxel::{
         Dimension,
@@ -114,11 +114,7 @@ fn start(
             commands.entity(entity).insert(correction);
         }
         let problem = watch.time("grow", || {
-            let asked = match domain.picture {
-                Some(_) => smoothed(complex, &importance.cells),
-                None => importance.cells.clone(),
-            };
-            Problem::of_cells(complex, asked, domain.settings.fidelity)
+            Problem::of_cells(complex, asked_sizes(complex, &importance.cells), domain.settings.fidelity)
         });
         let growth = Growth::of(complex.dimension, domain.settings.keys, &problem.importance);
         commands.entity(entity).insert((

@@ -37,7 +37,7 @@ use sphere::Sphere;
 pub use colour::colours;
 pub use layer::{CLAMP_MAX, CLAMP_MIN, IMAGE_RANGE, Layer, Range};
 pub use sphere::falloff;
-pub use spread::{Sampling, Spread, cell_importance, node_importance, smoothed};
+pub use spread::{Sampling, Spread, asked_sizes, cell_importance, node_importance, smoothed};
 
 /// A point on the boundary's surface where importance is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,6 +114,13 @@ impl Stack {
     /// If `base` is not > 0 and finite.
     pub fn uniform(base: f32) -> Result<Self> {
         Self::load(&[], base, false, &Boundary::default(), Path::new(""))
+    }
+
+    /// What is known at `[vertices]` alone, > 0; with what is to be told of how it was read.
+    pub fn of_vertices(importance: &[f32], warnings: Vec<String>, clamped: usize) -> Self {
+        let values = importance.iter().map(|&value| Some(ln(value))).collect();
+        let admission = Admission { clamped, ..Admission::default() };
+        Self { layers: vec![Ready::Vertices(values)], warnings, admission, ..Self::default() }
     }
 
     /// `[samples]` importance at surface samples, > 0 and finite.

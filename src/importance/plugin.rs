@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// F of a domain, > 0.
-#[derive(Component, Debug)]
+#[derive(Component, Debug, Clone, Default)]
 pub struct Importance {
     /// `[nodes]`, for the edges of Eq. 1.
     pub nodes: Vec<f32>,

@@ -12,7 +12,7 @@ use crate::{
     boundary::Boundary,
     edge::{Multigrid, Weights, conjugate_gradients},
     transfer::CellIndex,
-    voxel::Complex,
+    voxel::{Complex, Dimension},
 };
 
 /// Samples per cell and axis on the surface.
@@ -42,6 +42,14 @@ pub fn smoothed(complex: &Complex, importance: &[f32]) -> Vec<f32> {
         ln = cell_importance(complex, &node_importance(complex, &ln));
     }
     ln.into_iter().map(f32::exp).collect()
+}
+
+/// `[cells]` sizes that the collision optimization is asked for: those of a picture [`smoothed`].
+pub fn asked_sizes(complex: &Complex, importance: &[f32]) -> Vec<f32> {
+    match complex.dimension {
+        Dimension::Two => smoothed(complex, importance),
+        Dimension::Three => importance.to_vec(),
+    }
 }
 
 /// `[nodes]` mean importance of the cells around.

@@ -56,6 +56,20 @@ impl Canvas {
         }
     }
 
+    /// The same surface with other regions.
+    #[must_use]
+    pub fn with_regions(&self, regions: Option<&Regions>) -> Self {
+        Self { regions: regions.cloned().unwrap_or_default(), ..self.clone() }
+    }
+
+    /// Whether its regions are these.
+    pub fn has_regions(&self, regions: Option<&Regions>) -> bool {
+        match regions {
+            Some(other) => self.regions.names == other.names && self.regions.of_vertex == other.of_vertex,
+            None => self.regions.names.is_empty(),
+        }
+    }
+
     /// Number of vertices.
     pub fn vertices(&self) -> usize {
         self.positions.len()

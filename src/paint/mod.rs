@@ -15,10 +15,12 @@
 mod apply;
 mod canvas;
 mod edit;
+mod ground;
 mod painting;
 
 pub use canvas::Canvas;
 pub use edit::{Action, Axis, Brush, Dab, Edit, Falloff, Fill};
+pub use ground::{Ground, PaintedPicture};
 pub use painting::{Painting, Under};
 
 use crate::{Result, boundary::Boundary, importance::Stack};
@@ -31,11 +33,26 @@ pub fn over(boundary: &Boundary, stack: Stack, strokes: &[Edit]) -> Result<Stack
     if strokes.is_empty() {
         return Ok(stack);
     }
+    let differences = differences(boundary, &stack, strokes)?;
+    Ok(stack.painted(differences))
+}
+
+/// The same on a picture.
+///
+/// # Errors
+/// As [`over`].
+pub fn over_picture(ground: Ground, strokes: &[Edit]) -> Result<PaintedPicture> {
+    let differences = differences(&ground.mesh, &ground.stack(), strokes)?;
+    Ok(PaintedPicture { ground, differences })
+}
+
+/// `[vertices]` what strokes add to ln f over layers.
+fn differences(boundary: &Boundary, stack: &Stack, strokes: &[Edit]) -> Result<Vec<f64>> {
     let canvas = Canvas::new(boundary);
     for (index, edit) in strokes.iter().enumerate() {
         edit.check(index, &canvas)?;
     }
     let under: Vec<f64> = stack.at_vertices(boundary).iter().map(|f| f64::from(*f).ln()).collect();
     let painted = apply::replay(&canvas, &under, strokes);
-    Ok(stack.painted(painted.iter().zip(&under).map(|(painted, under)| painted - under).collect()))
+    Ok(painted.iter().zip(&under).map(|(painted, under)| painted - under).collect())
 }

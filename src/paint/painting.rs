@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Brush, Canvas, Dab, Edit,
+    Brush, Canvas, Dab, Edit, Ground, PaintedPicture,
     apply::{Live, apply, replay},
 };
 use crate::{
@@ -26,6 +26,8 @@ pub struct Under {
     pub boundary: Arc<Boundary>,
     /// All of it, read and checked.
     pub stack: Arc<Stack>,
+    /// The picture, where it is one that is painted on; the surface is then its mesh.
+    pub ground: Option<Ground>,
 }
 
 /// One step of undo.
@@ -97,10 +99,23 @@ impl Painting {
     /// Importance as a function of the surface: the layers with what was painted over them.
     pub fn stack(&self) -> Stack {
         let stack = Stack::clone(&self.under.stack);
-        if self.edits.is_empty() && self.stroke.is_none() {
-            return stack;
-        }
-        stack.painted(self.ln.iter().zip(&self.ln_under).map(|(ln, under)| ln - under).collect())
+        if self.is_bare() { stack } else { stack.painted(self.differences()) }
+    }
+
+    /// The picture with what was painted on it, if it is a picture.
+    pub fn picture(&self) -> Option<PaintedPicture> {
+        let ground = self.under.ground.clone()?;
+        let differences = if self.is_bare() { Vec::new() } else { self.differences() };
+        Some(PaintedPicture { ground, differences })
+    }
+
+    fn is_bare(&self) -> bool {
+        self.edits.is_empty() && self.stroke.is_none()
+    }
+
+    /// `[vertices]` what was painted over the layers, in ln f.
+    fn differences(&self) -> Vec<f64> {
+        self.ln.iter().zip(&self.ln_under).map(|(ln, under)| ln - under).collect()
     }
 
     /// Begins a stroke; one that was being made ends.
@@ -234,6 +249,8 @@ impl Painting {
     fn repaint(&mut self) {
         if self.under.boundary.positions.len() != self.canvas.vertices() {
             self.canvas = Arc::new(Canvas::new(&self.under.boundary));
+        } else if !self.canvas.has_regions(self.under.boundary.regions.as_ref()) {
+            self.canvas = Arc::new(self.canvas.with_regions(self.under.boundary.regions.as_ref()));
         }
         self.ln_under = logarithms(&self.under);
         self.ln = replay(&self.canvas, &self.ln_under, &self.edits);

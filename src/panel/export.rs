@@ -15,15 +15,30 @@ pub struct ExportChoice {
     pub colour_mesh: bool,
     /// The same for the growth.
     pub colour_growth: bool,
+    /// Of a picture: pixels of the result along one of the input, 0.01..=64.
+    pub scale: f32,
+    /// Of a picture: extension of its growth.
+    pub picture_growth: &'static str,
     /// Length of the growth, seconds.
     pub seconds: f32,
 }
 
 impl Default for ExportChoice {
     fn default() -> Self {
-        Self { is_open: false, format: "glb", colour_mesh: false, colour_growth: true, seconds: 4.0 }
+        Self {
+            is_open: false,
+            format: "glb",
+            colour_mesh: false,
+            colour_growth: true,
+            scale: 1.0,
+            picture_growth: "gif",
+            seconds: 4.0,
+        }
     }
 }
+
+/// Formats the growth of a picture can be written in.
+const PICTURE_GROWTH_FORMATS: [&str; 3] = ["gif", "apng", "glb"];
 
 /// Formats a mesh can be written in.
 pub const MESH_FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
@@ -51,7 +66,37 @@ pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &m
     choice.export.is_open = is_open;
 }
 
-fn content(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
+fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
+    if facts.is_picture() {
+        picture(ui, export, wishes);
+    } else {
+        mesh(ui, export, wishes);
+    }
+    part(ui, "Report", "JSON: what was asked, achieved and proven", Asked::ExportReport, wishes, |_| {});
+}
+
+fn seconds(ui: &mut Ui, seconds: &mut f32) {
+    ui.add(egui::DragValue::new(seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
+        .on_hover_text("How long it grows");
+}
+
+fn picture(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
+    part(ui, "Warped picture", "PNG with alpha, as deep as the input", Asked::ExportMesh, wishes, |ui| {
+        ui.add(egui::DragValue::new(&mut export.scale).range(0.01..=64.0).speed(0.01).prefix("×"))
+            .on_hover_text("Pixels of the result along one of the input, of the growth too");
+    });
+    let hint = "GIF or animated PNG; GLB is a textured mesh for any glTF viewer";
+    part(ui, "Growth animation", hint, Asked::ExportGrowth, wishes, |ui| {
+        seconds(ui, &mut export.seconds);
+        egui::ComboBox::from_id_salt("growth").width(60.0).selected_text(export.picture_growth).show_ui(ui, |ui| {
+            for format in PICTURE_GROWTH_FORMATS {
+                ui.selectable_value(&mut export.picture_growth, format, format);
+            }
+        });
+    });
+}
+
+fn mesh(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
     part(
         ui,
         "Warped mesh",
@@ -74,12 +119,10 @@ fn content(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
         Asked::ExportGrowth,
         wishes,
         |ui| {
-            ui.add(egui::DragValue::new(&mut export.seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
-                .on_hover_text("How long it grows");
+            seconds(ui, &mut export.seconds);
             ui.checkbox(&mut export.colour_growth, "colours of importance");
         },
     );
-    part(ui, "Report", "JSON: what was asked, achieved and proven", Asked::ExportReport, wishes, |_| {});
 }
 
 fn part(ui: &mut Ui, name: &str, hint: &str, asked: Asked, wishes: &mut Vec<Wish>, settings: impl FnOnce(&mut Ui)) {

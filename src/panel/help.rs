@@ -9,7 +9,7 @@ const KEYS: [(&str, &[(&str, &str)]); 4] = [
     (
         "View",
         &[
-            ("drag", "turn (right drag while painting)"),
+            ("drag", "turn (right drag while painting); move a picture"),
             ("middle or Shift + drag", "move"),
             ("wheel", "nearer, farther, to the pointer"),
             ("F", "everything"),

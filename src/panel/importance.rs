@@ -15,14 +15,14 @@ fn factor(ui: &mut Ui, value: &mut f32) -> egui::Response {
 
 pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     theme::section(ui, "Importance", |ui| {
-        brush(ui, choice);
+        brush(ui, facts, choice);
         ui.add_space(4.0);
         theme::folded(ui, "Fill", choice.tool == Tool::Fill, |ui| fill(ui, facts, choice, wishes));
         theme::folded(ui, "Layers", true, |ui| layers(ui, facts, wishes));
     });
 }
 
-fn brush(ui: &mut Ui, choice: &mut Choice) {
+fn brush(ui: &mut Ui, facts: &Facts, choice: &mut Choice) {
     let before = choice.brush;
     let brush = &mut choice.brush;
     theme::choices(
@@ -53,7 +53,8 @@ fn brush(ui: &mut Ui, choice: &mut Choice) {
         theme::choices(ui, &mut brush.falloff, &all);
     });
     theme::row(ui, "Mirror", "Paints the other side of the middle as well", |ui| {
-        for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let axes = if facts.is_picture() { 2 } else { 3 };
+        for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate().take(axes) {
             ui.toggle_value(&mut brush.mirror[axis], name);
         }
     });
@@ -127,7 +128,10 @@ fn layers(ui: &mut Ui, facts: &Facts, wishes: &mut Vec<Wish>) {
             }
         });
     }
-    if matches!(draft.source, crate::scene::Source::Gallery(_)) {
+    let is_picture = facts.is_picture();
+    // What is said of a built-in picture takes the place of its own; a model's lies below.
+    let has_own = matches!(draft.source, crate::scene::Source::Gallery(_));
+    if has_own && (!is_picture || draft.layers.is_empty()) {
         ui.label(theme::weak("the model's own importance"));
     }
     theme::row(ui, "Base", "Importance where nothing else is said", |ui| {
@@ -135,18 +139,31 @@ fn layers(ui: &mut Ui, facts: &Facts, wishes: &mut Vec<Wish>) {
         if ui.add(egui::DragValue::new(&mut base).range(CLAMP_MIN..=CLAMP_MAX).speed(0.01).prefix("×")).changed() {
             wishes.push(Wish::SetBase(base));
         }
-        add(ui, painting, wishes);
+        add(ui, painting, is_picture, wishes);
     });
 }
 
-fn add(ui: &mut Ui, painting: &crate::paint::Painting, wishes: &mut Vec<Wish>) {
+/// Layers of a body: name, what is asked for, hint.
+const BODY_LAYERS: [(&str, Asked, &str); 3] = [
+    ("Table of values…", Asked::Values, "CSV: vertex,importance; for a built-in model region,importance"),
+    ("Tables of regions…", Asked::Regions, "CSV: vertex,region, then CSV: region,importance"),
+    ("Picture…", Asked::Image, "Laid over the surface by its texture coordinates: black ×0.5, white ×2"),
+];
+
+/// Layers of a picture.
+const PICTURE_LAYERS: [(&str, Asked, &str); 2] = [
+    (
+        "Regions…",
+        Asked::Regions,
+        "A picture of ids as grey values, then CSV: region,importance, or region,value to become area",
+    ),
+    ("Map…", Asked::Image, "A picture of the same size: black ×0.5, white ×2"),
+];
+
+fn add(ui: &mut Ui, painting: &crate::paint::Painting, is_picture: bool, wishes: &mut Vec<Wish>) {
     ui.menu_button("Add layer…", |ui| {
-        let tables = [
-            ("Table of values…", Asked::Values, "CSV: vertex,importance; for a built-in model region,importance"),
-            ("Tables of regions…", Asked::Regions, "CSV: vertex,region, then CSV: region,importance"),
-            ("Picture…", Asked::Image, "Laid over the surface by its texture coordinates: black ×0.5, white ×2"),
-        ];
-        for (name, asked, hint) in tables {
+        let layers = if is_picture { &PICTURE_LAYERS[..] } else { &BODY_LAYERS[..] };
+        for &(name, asked, hint) in layers {
             if ui.button(name).on_hover_text(hint).clicked() {
                 wishes.push(Wish::Ask(asked));
             }

@@ -75,6 +75,13 @@ pub struct Facts<'a> {
     pub sizes: Vec<(egui::Pos2, &'static str)>,
 }
 
+impl Facts<'_> {
+    /// Whether a picture is open.
+    pub fn is_picture(&self) -> bool {
+        self.painting.is_some_and(|painting| painting.under().ground.is_some())
+    }
+}
+
 /// What the left mouse button does on the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tool {
@@ -263,7 +270,7 @@ pub fn draw(root: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<
     egui::Panel::right("right").resizable(false).exact_size(theme::SIDE).frame(theme::side_frame()).show(root, |ui| {
         theme::scroll(ui, "right", |ui| {
             solver::show(ui, facts, &mut choice.pending, wishes);
-            view::show(ui, choice, wishes);
+            view::show(ui, facts, choice, wishes);
             statistics::show(ui, facts);
         });
     });

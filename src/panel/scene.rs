@@ -7,13 +7,13 @@ use crate::{gallery, scene::Source};
 
 pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     theme::section(ui, "Scene", |ui| {
-        theme::row(ui, "Built in", "Models that come with the program", |ui| {
+        theme::row(ui, "Built in", "Models and pictures that come with the program", |ui| {
             let open = match facts.draft.map(|draft| &draft.source) {
                 Some(Source::Gallery(name)) => name.as_str(),
                 _ => "choose",
             };
             egui::ComboBox::from_id_salt("gallery").width(150.0).selected_text(open).show_ui(ui, |ui| {
-                for entry in gallery::list() {
+                for entry in gallery::list().iter().copied().chain(gallery::picture::list()) {
                     let chosen = ui.selectable_label(open == entry.name, entry.name);
                     if chosen.on_hover_text(format!("{}\n{}", entry.one_line, entry.reference)).clicked() {
                         wishes.push(Wish::Open(Source::Gallery(entry.name.into())));

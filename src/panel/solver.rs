@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Response, Ui};
 use super::{Facts, Wish, theme};
 use crate::{
     diagnostics::human_bytes,
-    scene::{MAX_KEYS, MAX_RESOLUTION, MIN_RESOLUTION, memory_estimate},
+    scene::{MAX_FLAT_RESOLUTION, MAX_KEYS, MAX_RESOLUTION, MIN_RESOLUTION, memory_estimate},
 };
 
 /// What is being dragged: the solver is told when it is let go.
@@ -41,10 +41,11 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, pending: &mut Pending, wishes: &m
         let resolution = theme::row(
             ui,
             "Resolution",
-            "Cells along the longest side, 8 to 256: finer shows more and takes longer",
+            "Cells along the longest side, 8 to 256, of a picture 8 to 512: finer shows more and takes longer",
             |ui| {
                 settled(ui, &mut pending.resolution, draft.resolution, |ui, value| {
-                    ui.add(egui::Slider::new(value, MIN_RESOLUTION..=MAX_RESOLUTION).logarithmic(true))
+                    let most = if facts.is_picture() { MAX_FLAT_RESOLUTION } else { MAX_RESOLUTION };
+                    ui.add(egui::Slider::new(value, MIN_RESOLUTION..=most).logarithmic(true))
                 })
             },
         );
@@ -75,7 +76,10 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, pending: &mut Pending, wishes: &m
                     ("Cells", group(domain.cells)),
                     ("Nodes", group(domain.nodes)),
                     ("Elements", group(domain.elements)),
-                    ("Cell size", format!("{:.4}", domain.cell_size)),
+                    (
+                        "Cell size",
+                        format!("{:.4}{}", domain.cell_size, if facts.is_picture() { " pixels" } else { "" }),
+                    ),
                     ("Welds", format!("{} suspected", domain.suspected_welds)),
                     ("Memory", format!("about {memory}")),
                 ] {

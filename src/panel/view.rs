@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Color32, Context, Ui};
 use super::{Choice, Compare, Facts, Wish, theme};
 use crate::view::{Axis, Legend, Mode, VoxelColour};
 
-pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
+pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     theme::section(ui, "View", |ui| {
         let voxels = match choice.mode {
             Mode::Voxels(_) => choice.mode,
@@ -15,7 +15,7 @@ pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
             ui,
             &mut choice.mode,
             &[
-                (Mode::Plain, "Plain", "The file's own colours, or grey"),
+                (Mode::Plain, "Plain", "The file's own colours, or grey; a picture as it is"),
                 (Mode::Importance, "Importance", "Size asked for"),
                 (Mode::Fidelity, "Fidelity", "Size achieved over size asked"),
                 (voxels, "Voxels", "The cells the inside is made of"),
@@ -34,12 +34,16 @@ pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
         ui.add_space(2.0);
         ui.horizontal(|ui| {
             ui.checkbox(&mut choice.ghost, "Rest shape").on_hover_text("The shape before warping, translucent");
-            ui.checkbox(&mut choice.size_legend, "Sizes").on_hover_text("Cubes of ×½, ×1, ×2, ×4 to compare with");
+            ui.checkbox(&mut choice.size_legend, "Sizes")
+                .on_hover_text("Cubes or discs of ×½, ×1, ×2, ×4 to compare with");
         });
-        ui.horizontal(|ui| {
-            ui.checkbox(&mut choice.turntable, "Turntable").on_hover_text("Turns by itself  (T)");
-            ui.checkbox(&mut choice.orthographic, "Parallel").on_hover_text("Parallels stay parallel");
-        });
+        let is_picture = facts.is_picture();
+        if !is_picture {
+            ui.horizontal(|ui| {
+                ui.checkbox(&mut choice.turntable, "Turntable").on_hover_text("Turns by itself  (T)");
+                ui.checkbox(&mut choice.orthographic, "Parallel").on_hover_text("Parallels stay parallel");
+            });
+        }
         theme::row(ui, "Classic", "What the edge optimization alone (Eq. 1) gives; crossings are red", |ui| {
             let all = [
                 (Compare::Off, "off", "The certified growth alone"),
@@ -48,6 +52,14 @@ pub(super) fn show(ui: &mut Ui, choice: &mut Choice, wishes: &mut Vec<Wish>) {
             ];
             theme::choices(ui, &mut choice.compare, &all);
         });
+        if is_picture {
+            theme::row(ui, "Look at", "", |ui| {
+                if ui.button("all").on_hover_text("Everything  (F)").clicked() {
+                    wishes.push(Wish::Frame);
+                }
+            });
+            return;
+        }
         theme::row(ui, "Look from", "1, 3, 7; with Ctrl from the other side", |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             for (axis, name) in [(Axis::Front, "front"), (Axis::Right, "side"), (Axis::Top, "top")] {

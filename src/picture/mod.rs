@@ -55,6 +55,25 @@ pub struct FlatMesh {
 }
 
 impl Picture {
+    /// What is drawn of the picture: the body with its smoothed rim, all else transparent.
+    pub fn body_pixels(&self) -> Pixels {
+        let mut pixels = self.pixels.clone();
+        let seen = render::seen(&self.domain, self.size);
+        (0..seen.len()).filter(|&index| !seen[index]).for_each(|index| pixels.set_wide(index, [0; 4]));
+        pixels
+    }
+
+    /// [`Self::body_pixels`] as a PNG, for the mesh that the picture is drawn on.
+    ///
+    /// # Errors
+    /// A fault where the encoder refuses.
+    pub fn body_png(&self) -> crate::Result<Vec<u8>> {
+        let mut png = Vec::new();
+        let written = self.body_pixels().write_png(&mut png, self.profile.as_deref());
+        written.map_err(|e| crate::Error::Fault(format!("{}: as a texture: {e}", self.name)))?;
+        Ok(png)
+    }
+
     /// The pixels of the body.
     pub fn domain_area(&self) -> usize {
         self.domain.iter().filter(|inside| **inside).count()

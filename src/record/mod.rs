@@ -20,6 +20,7 @@ mod settings;
 mod sidecar;
 mod stage;
 mod subject;
+mod wall;
 mod writer;
 
 pub(crate) use lens::Sight;

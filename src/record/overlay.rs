@@ -75,6 +75,14 @@ fn unit(screen: Rect) -> f32 {
     (screen.height() / REFERENCE_HEIGHT).min(screen.width() / (0.56 * REFERENCE_HEIGHT)).max(0.4)
 }
 
+/// What writing takes of a screen, from its left, top and bottom edge in pixels: a legend takes the left or the bottom.
+pub(super) fn taken(screen: glam::Vec2, title: bool, legend: bool, captions: bool) -> Vec<[f32; 3]> {
+    let unit = unit(Rect::from_min_size(Pos2::ZERO, Vec2::new(screen.x, screen.y)));
+    let top = unit * if captions { 128.0 } else { f32::from(u8::from(title)) * 68.0 };
+    let ways: &[[f32; 2]] = if legend { &[[328.0, 0.0], [0.0, 102.0]] } else { &[[0.0, 0.0]] };
+    ways.iter().map(|[left, bottom]| [left * unit, top, bottom * unit]).collect()
+}
+
 struct Page {
     painter: egui::Painter,
     screen: Rect,

@@ -7,11 +7,12 @@ use image::RgbaImage;
 
 use super::lens::{Lens, Sight};
 use super::overlay::{Caption, Slate, Writing};
+use super::wall::Wall;
 use super::{FramePlan, Settings, Subject, View};
 use crate::Result;
 use crate::certificate::Certificate;
 use crate::view::headless::{Renderer, Shown};
-use crate::view::{Adapter, Backdrop, Looks, Mode, Orbit, Placement, Quality, Studio, VoxelColour};
+use crate::view::{Adapter, Backdrop, FIELD_OF_VIEW, Looks, Mode, Orbit, Placement, Quality, Studio, VoxelColour};
 
 /// Directions that the camera is fitted to while it goes around.
 const DIRECTIONS: usize = 16;
@@ -27,7 +28,7 @@ const FINE_PIXELS: u32 = 3840 * 2160;
 const FINE_FILM_PIXELS: u32 = 512 * 512;
 
 /// What one frame shows was found to be.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Findings {
     /// Of the growth, where it is shown.
     pub growth: Option<Certificate>,
@@ -52,7 +53,8 @@ pub(super) struct Stage {
 impl Stage {
     /// Sets it up for a film.
     pub fn new(subject: &Subject, settings: &Settings, plan: &[FramePlan], adapter: &Adapter) -> Result<Self> {
-        let mut renderer = Renderer::new([settings.width, settings.height], quality(settings, adapter))?;
+        let is_picture = subject.is_picture();
+        let mut renderer = Renderer::new([settings.width, settings.height], quality(settings, adapter, is_picture))?;
         let looks = looks(subject, settings.view);
         let shown = |looks: &Looks| Shown { looks: looks.clone(), ..Shown::new(subject.body()) };
         let shows_classic = matches!(settings.view, View::Classic | View::Compare);
@@ -66,13 +68,14 @@ impl Stage {
             on_paper: settings.transparent,
         });
         let backdrop = if settings.transparent { Backdrop::Transparent } else { Backdrop::Studio };
-        renderer.world_mut().insert_resource(Studio { backdrop, ..Studio::default() });
+        renderer.world_mut().insert_resource(Studio { backdrop, floor: !is_picture });
         let on_screen = slate.clone();
         renderer.overlay(move |context| on_screen.draw(context));
 
         let orbit = Orbit {
             yaw: settings.camera.yaw.to_radians(),
             pitch: settings.camera.pitch.to_radians(),
+            orthographic: is_picture,
             ..Orbit::default()
         };
         let (lens, apart) = fit(subject, settings, plan, &orbit);
@@ -80,7 +83,7 @@ impl Stage {
         let mut stage = Self { renderer, growth, classic, slate, lens, orbit, apart };
         // Shaders, letters and textures come with the first picture, which is not shown.
         if let Some(first) = plan.first() {
-            stage.picture(subject, first, &Findings { growth: None, classic: None, faulty: None })?;
+            stage.picture(subject, first, &Findings::default())?;
         }
         Ok(stage)
     }
@@ -130,9 +133,13 @@ impl Stage {
     }
 }
 
-/// Films as fast as the adapter likes; a still may take its time, and a small film takes little.
-fn quality(settings: &Settings, adapter: &Adapter) -> Quality {
-    let quality = Quality::for_adapter(adapter);
+/// Films as fast as the adapter likes; a still may take its time, and a small film takes little. A picture costs little,
+/// and its edges are smoothed by samples: what smooths edges found in the finished frame would blur what is drawn in it.
+fn quality(settings: &Settings, adapter: &Adapter, is_picture: bool) -> Quality {
+    let mut quality = Quality::for_adapter(adapter);
+    if is_picture {
+        quality.samples = quality.samples.max(4);
+    }
     let fits = 2 * settings.width.max(settings.height) <= adapter.largest_side;
     let most = if settings.still.is_some() { FINE_PIXELS } else { FINE_FILM_PIXELS };
     let is_fine = fits && settings.width * settings.height <= most;
@@ -141,6 +148,8 @@ fn quality(settings: &Settings, adapter: &Adapter) -> Quality {
 
 fn looks(subject: &Subject, view: View) -> Looks {
     let (mode, voxels) = match view {
+        // Beside itself a picture is best told by what it shows.
+        View::Classic | View::Compare if subject.is_picture() => (Mode::Plain, None),
         View::Importance | View::Classic | View::Compare => (Mode::Importance, None),
         View::Plain => (Mode::Plain, None),
         View::Voxels => (Mode::Voxels(VoxelColour::Importance), Some(subject.node_importance().clone())),
@@ -150,17 +159,17 @@ fn looks(subject: &Subject, view: View) -> Looks {
 
 /// Where the camera stands, and how far apart two bodies are.
 fn fit(subject: &Subject, settings: &Settings, plan: &[FramePlan], orbit: &Orbit) -> (Lens, f32) {
+    if subject.is_picture() {
+        return hang(subject, settings);
+    }
     let every = plan.len().div_ceil(DIRECTIONS).max(1);
     let mut yaws: Vec<f32> = plan.iter().step_by(every).map(|frame| orbit.yaw + frame.turn).collect();
     yaws.dedup();
     if yaws.is_empty() {
         yaws.push(orbit.yaw);
     }
-    let opening = match orbit.projection() {
-        Projection::Perspective(perspective) => perspective.fov,
-        _ => std::f32::consts::FRAC_PI_4,
-    };
     let aspect = settings.width as f32 / settings.height as f32;
+    let opening = FIELD_OF_VIEW;
     let sight = Sight { yaws: &yaws, pitch: orbit.pitch, opening, aspect };
     let [certified, classic] = subject.reach();
     match settings.view {
@@ -176,6 +185,25 @@ fn fit(subject: &Subject, settings: &Settings, plan: &[FramePlan], orbit: &Orbit
         }
         _ => (sight.fit(&certified), 0.0),
     }
+}
+
+/// The same for a picture.
+fn hang(subject: &Subject, settings: &Settings) -> (Lens, f32) {
+    let [certified, classic] = subject.reach();
+    let shown = match settings.view {
+        View::Classic => classic,
+        View::Compare => certified.into_iter().chain(classic).collect(),
+        _ => certified,
+    };
+    let low = shown.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::NEG_ONE);
+    let high = shown.into_iter().reduce(Vec3::max).unwrap_or(Vec3::ONE);
+    let wall = Wall {
+        size: [settings.width, settings.height],
+        title: settings.title.is_some(),
+        legend: settings.legend && looks(subject, settings.view).legend().is_some(),
+        pictures: if settings.view == View::Compare { 2 } else { 1 },
+    };
+    wall.hang(low, high)
 }
 
 /// How wide points are from one direction.

@@ -13,7 +13,7 @@ use crate::film::blend;
 use crate::schedule::{Outcome, Solved};
 use crate::transfer::Binding;
 use crate::view::{Body, Pose, ViewFrame};
-use crate::voxel::Complex;
+use crate::voxel::{Complex, Dimension};
 
 /// A solved domain before the camera.
 pub struct Subject {
@@ -45,6 +45,9 @@ enum Shot {
     /// Eq. 1 alone at the bits of λ.
     Classic(u32),
 }
+
+/// A mark is seen when it is as wide as one of so many cells along the longest side.
+const SEEN: u32 = 64;
 
 /// Vertices of a state that the camera is fitted to, about: enough that none sticks out by more than the margin.
 const FITTED: usize = 4000;
@@ -117,18 +120,34 @@ impl Subject {
         self.prove(Shot::Classic(lambda.to_bits()), &pose)
     }
 
-    /// Triangles of the boundary that are faulty in Eq. 1 alone at λ, rising; found once.
+    /// Triangles of the boundary that are faulty in Eq. 1 alone at λ, rising; found once. Of a picture with as many cells
+    /// around as it takes to be seen.
     pub(super) fn classic_faults(&mut self, lambda: f32) -> Arc<Vec<u32>> {
         let pose = self.classic_pose(lambda);
+        let state = blend(&pose.from, &pose.to, pose.blend);
         let places = self.places.get_or_insert_with(|| Places::new(&self.boundary, &self.complex));
-        let find = || places.faulty(&self.complex, &self.shells, &blend(&pose.from, &pose.to, pose.blend));
-        self.faulty.entry(lambda.to_bits()).or_insert_with(|| Arc::new(find())).clone()
+        let (complex, shells) = (&self.complex, &self.shells);
+        let find = || {
+            let mut faulty = places.faulty(complex, shells, &state);
+            if let Some(skin) = shells.first().filter(|_| complex.dimension == Dimension::Two) {
+                faulty.extend(around_crossings(complex, skin, &state));
+                faulty.sort_unstable();
+                faulty.dedup();
+            }
+            Arc::new(faulty)
+        };
+        self.faulty.entry(lambda.to_bits()).or_insert_with(find).clone()
     }
 
     fn prove(&mut self, shot: Shot, pose: &Pose) -> Certificate {
         let (complex, shells) = (&self.complex, &mut self.shells);
         let check = || certify(complex, shells, &blend(&pose.from, &pose.to, pose.blend));
         self.proven.entry(shot).or_insert_with(check).clone()
+    }
+
+    /// Whether it is a picture.
+    pub(super) fn is_picture(&self) -> bool {
+        self.complex.dimension == Dimension::Two
     }
 
     /// Points of the surface in view space, standing on the floor, over all of the certified growth, and of Eq. 1 alone.
@@ -147,7 +166,27 @@ impl Subject {
             let lowest = points.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
             points.iter_mut().for_each(|p| p.y -= lowest);
         }
+        if self.is_picture() {
+            // Looked at straight on, it reaches as far as the box around it.
+            let low = points.iter().copied().reduce(Vec3::min);
+            return low.into_iter().chain(points.into_iter().reduce(Vec3::max)).collect();
+        }
         let every = points.len().div_ceil(FITTED).max(1);
         points.into_iter().step_by(every).filter(|p| p.is_finite()).collect()
     }
+}
+
+/// Triangles of a picture's mesh where its outline crosses itself in a state, with as many cells around as it takes to be
+/// seen.
+fn around_crossings(complex: &Complex, skin: &Shell, state: &[Vec3A]) -> Vec<u32> {
+    let faces = skin.crossings(state).into_iter().flat_map(|(s, t)| [s, t]);
+    let mut cells: Vec<u32> = faces.map(|face| complex.cell_of_face[face as usize]).collect();
+    for _ in 0..complex.grid.cells.max_element() / SEEN {
+        let corners = cells.iter().flat_map(|&cell| complex.corners[cell as usize]);
+        cells = corners.flat_map(|node| complex.cells_around[node as usize]).filter(|&c| c != u32::MAX).collect();
+        cells.sort_unstable();
+        cells.dedup();
+    }
+    // The halved lattice has eight triangles in each cell, cell by cell.
+    cells.into_iter().flat_map(|cell| 8 * cell..8 * cell + 8).collect()
 }

@@ -15,41 +15,56 @@ mod linear;
 mod snapshot;
 mod worker;
 
-pub use linear::Linear;
+pub use linear::{Asked, Linear};
 pub use snapshot::{Histogram, Lattice, Phase, Snapshot, State};
 
 use std::{
-    sync::{Arc, Mutex, mpsc},
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicU64, Ordering},
+        mpsc,
+    },
     time::Instant,
 };
 
-use crate::{boundary::Boundary, importance::Stack, schedule::Settings};
+use crate::{boundary::Boundary, importance::Stack, paint::PaintedPicture, schedule::Settings};
 
 /// What to solve.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// B.
     pub boundary: Arc<Boundary>,
-    /// F.
+    /// F; of a picture nothing, as it brings its own.
     pub importance: Arc<Stack>,
+    /// The picture with what was painted on it, where it is one; `boundary` is then the mesh that is painted on.
+    pub picture: Option<Arc<PaintedPicture>>,
     /// How.
     pub settings: Settings,
 }
 
 /// What the solver is told.
 enum Order {
-    Open(Subject),
-    Importance(Arc<Stack>, Instant),
+    Open(Subject, u64),
+    Importance(Asking, Instant),
     Settings(Settings),
     Cancel,
     Resume,
     Shutdown,
 }
 
+/// How a change of importance is told.
+#[derive(Clone)]
+enum Asking {
+    Surface(Arc<Stack>),
+    Picture(Arc<PaintedPicture>),
+}
+
 /// A solver in the background. Dropping it ends its thread.
 pub struct Session {
     orders: mpsc::Sender<Order>,
     shared: Arc<Shared>,
+    /// How many subjects it was given.
+    opened: AtomicU64,
 }
 
 /// What both sides see.
@@ -82,17 +97,23 @@ impl Session {
             .name("solver".into())
             .spawn(move || worker::work(&inbox, &seen))
             .map_err(|e| crate::Error::Fault(format!("starting the solver's thread: {e}")))?;
-        Ok(Self { orders, shared })
+        Ok(Self { orders, shared, opened: AtomicU64::new(0) })
     }
 
     /// Solves something else.
     pub fn open(&self, subject: Subject) {
-        self.order(Order::Open(subject));
+        let number = self.opened.fetch_add(1, Ordering::Relaxed) + 1;
+        self.order(Order::Open(subject, number));
     }
 
     /// Goes on with another importance of the same boundary.
     pub fn set_importance(&self, importance: Arc<Stack>) {
-        self.order(Order::Importance(importance, Instant::now()));
+        self.order(Order::Importance(Asking::Surface(importance), Instant::now()));
+    }
+
+    /// The same for a picture.
+    pub fn set_picture(&self, picture: Arc<PaintedPicture>) {
+        self.order(Order::Importance(Asking::Picture(picture), Instant::now()));
     }
 
     /// Solves with other settings.
@@ -110,9 +131,13 @@ impl Session {
         self.order(Order::Resume);
     }
 
-    /// Where it is: cheap, never waits for the solver.
+    /// Where it is: cheap, never waits for the solver. Nothing of a subject before the one it was given last.
     pub fn snapshot(&self) -> Arc<Snapshot> {
-        self.shared.latest()
+        let latest = self.shared.latest();
+        if latest.opened == self.opened.load(Ordering::Relaxed) {
+            return latest;
+        }
+        Arc::new(Snapshot { phase: Phase::Preparing, ..Snapshot::default() })
     }
 
     fn order(&self, order: Order) {

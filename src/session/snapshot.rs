@@ -10,7 +10,7 @@ use crate::{
     certificate::{Certificate, volume_ratios},
     schedule::{DomainSummary, Outcome},
     transfer::Binding,
-    voxel::{Complex, KUHN},
+    voxel::Complex,
 };
 
 /// What the solver is doing.
@@ -47,6 +47,8 @@ impl Phase {
 pub struct Snapshot {
     /// Rises with each snapshot.
     pub version: u64,
+    /// Of which subject, in the order they were given, from 1.
+    pub opened: u64,
     /// What the solver is doing.
     pub phase: Phase,
     /// λ of the state being solved, 0..=1.
@@ -86,7 +88,7 @@ pub struct Snapshot {
 /// What was voxelized.
 #[derive(Debug, Clone)]
 pub struct Lattice {
-    /// B.
+    /// B; of a picture the mesh it is drawn on, textured.
     pub boundary: Arc<Boundary>,
     /// C.
     pub complex: Arc<Complex>,
@@ -110,17 +112,17 @@ pub struct State {
 impl Lattice {
     /// `[vertices]` size achieved over size asked for, > 0; `asked` is `[cells]`.
     ///
-    /// Per cell the cube root of its volume, averaged over the cells around each node, then over the nodes that carry a
+    /// Per cell the cube root of its volume (of a picture the square root of its area), averaged over the cells around each node, then over the nodes that carry a
     /// vertex.
     pub fn reached(&self, asked: &[f32], positions: &[Vec3A]) -> Vec<f32> {
         let (complex, binding) = (&*self.complex, &*self.binding);
         let volumes = volume_ratios(complex, positions);
         let of_cell: Vec<f32> = volumes
-            .par_chunks(KUHN.len())
+            .par_chunks(complex.dimension.elements().len())
             .zip(asked)
             .map(|(volumes, asked)| {
                 let mean = volumes.iter().sum::<f32>() / volumes.len() as f32;
-                mean.max(f32::MIN_POSITIVE).cbrt() / asked
+                complex.dimension.size(f64::from(mean.max(f32::MIN_POSITIVE))) as f32 / asked
             })
             .collect();
         let mean = |values: &mut dyn Iterator<Item = f32>| {
@@ -152,8 +154,10 @@ impl Histogram {
     /// Counts the elements of a state; `asked` is `[cells]`.
     pub fn new(complex: &Complex, asked: &[f32], positions: &[Vec3A]) -> Self {
         let mut counts = vec![0; Self::BINS];
+        let per_cell = complex.dimension.elements().len();
         for (t, volume) in volume_ratios(complex, positions).into_iter().enumerate() {
-            let octaves = (volume.max(f32::MIN_POSITIVE).cbrt() / asked[t / 6]).log2();
+            let size = complex.dimension.size(f64::from(volume.max(f32::MIN_POSITIVE))) as f32;
+            let octaves = (size / asked[t / per_cell]).log2();
             let bin = ((octaves + 1.0) * 0.5 * Self::BINS as f32).clamp(0.0, Self::BINS as f32 - 1.0);
             counts[bin as usize] += 1;
         }

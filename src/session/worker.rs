@@ -5,17 +5,22 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{Histogram, Lattice, Linear, Order, Phase, Shared, Snapshot, State, Subject};
+use super::{Asked, Asking, Histogram, Lattice, Linear, Order, Phase, Shared, Snapshot, State, Subject};
 use crate::{
     Result,
+    boundary::Boundary,
     collision::plugin::{CollisionProblem, Warped},
     edge::plugin::LinearSolution,
     film::plugin::Reel,
-    importance::{Stack, cell_importance, plugin::Importance},
-    scene::check_resolution,
+    importance::plugin::Importance,
+    scene::{check_flat_resolution, check_resolution},
     schedule::{Domain, Run, Settings, domain_summary},
-    transfer::Binding,
-    voxel::{self, plugin::SuspectedWelds, suspected_welds, voxelize},
+    transfer::{Binding, flat_boundary, plugin::Bound},
+    voxel::{
+        self,
+        plugin::{PixelShares, SuspectedWelds},
+        suspected_welds, voxelize,
+    },
 };
 
 /// Between two snapshots of a running solve: each shows a state, and a window draws no more than sixty a second.
@@ -52,7 +57,7 @@ pub(super) fn work(inbox: &mpsc::Receiver<Order>, shared: &Shared) {
 fn newest(first: Order, inbox: &mpsc::Receiver<Order>) -> Vec<Order> {
     let mut orders: Vec<Order> = Vec::new();
     for order in std::iter::once(first).chain(inbox.try_iter()) {
-        if matches!(order, Order::Open(_)) {
+        if matches!(order, Order::Open(..)) {
             orders.clear();
         }
         orders.retain(|o| std::mem::discriminant(o) != std::mem::discriminant(&order));
@@ -72,7 +77,7 @@ struct Solve {
     linear: Linear,
     /// Importance has changed and the run does not know yet; when it may be told.
     changed: Option<Instant>,
-    importance: Vec<f32>,
+    asked: Asked,
     /// Which phase was stopped.
     stopped: Option<Phase>,
 }
@@ -110,8 +115,11 @@ impl Worker<'_> {
         for order in orders {
             let result = match order {
                 Order::Shutdown => return false,
-                Order::Open(subject) => self.open(subject),
-                Order::Importance(stack, at) => self.set_importance(stack, Some(at)),
+                Order::Open(subject, number) => {
+                    self.now.opened = number;
+                    self.open(subject)
+                }
+                Order::Importance(asking, at) => self.set_importance(asking, Some(at)),
                 Order::Settings(settings) => self.set_settings(settings),
                 Order::Cancel => {
                     self.stop();
@@ -137,9 +145,12 @@ impl Worker<'_> {
     }
 
     fn open(&mut self, subject: Subject) -> Result<()> {
-        let version = self.now.version;
-        self.now = Snapshot { version, phase: Phase::Preparing, ..Snapshot::default() };
-        check_resolution(subject.settings.resolution)?;
+        let Snapshot { version, opened, .. } = self.now;
+        self.now = Snapshot { version, opened, phase: Phase::Preparing, ..Snapshot::default() };
+        match subject.picture {
+            Some(_) => check_flat_resolution(subject.settings.resolution)?,
+            None => check_resolution(subject.settings.resolution)?,
+        }
         self.subject = Some(subject);
         self.job = Some(Job::Voxelize);
         self.publish();
@@ -152,21 +163,25 @@ impl Worker<'_> {
         subject.settings = settings;
         let subject = subject.clone();
         if same_lattice && self.job.is_some() {
-            self.set_importance(subject.importance, None)
+            let picture = subject.picture.map(Asking::Picture);
+            self.set_importance(picture.unwrap_or(Asking::Surface(subject.importance)), None)
         } else {
             self.open(subject)
         }
     }
 
     /// The linear solution now; the rest once no more dabs come. `at` is when the change was ordered.
-    fn set_importance(&mut self, stack: Arc<Stack>, at: Option<Instant>) -> Result<()> {
+    fn set_importance(&mut self, asking: Asking, at: Option<Instant>) -> Result<()> {
         let Some(subject) = &mut self.subject else { return Ok(()) };
-        subject.importance = stack;
+        match asking {
+            Asking::Surface(stack) => subject.importance = stack,
+            Asking::Picture(picture) => subject.picture = Some(picture),
+        }
         let (Some(Job::Solve(solve)), Some(lattice)) = (&mut self.job, &self.now.lattice) else { return Ok(()) };
-        let (importance, linear) = solve.linear.solve(&subject.boundary, &lattice.complex, &subject.importance);
+        let (asked, linear) = solve.linear.solve(subject, &lattice.complex);
         self.now.linear = Some(Arc::new(linear.to_vec()));
-        self.now.importance = Some(Arc::new(importance.clone()));
-        solve.importance = importance;
+        self.now.importance = Some(Arc::new(asked.importance.nodes.clone()));
+        solve.asked = asked;
         solve.changed = Some(Instant::now() + QUIET);
         solve.stopped = None;
         self.now.phase = Phase::Adapting;
@@ -219,41 +234,42 @@ impl Worker<'_> {
 
     /// Lattice, importance, linear solution.
     fn prepare(&mut self) -> Result<()> {
-        let Some(Subject { boundary, importance: stack, settings }) = self.subject.clone() else { return Ok(()) };
-        let complex = Arc::new(voxelize(&boundary, settings.resolution)?);
-        let binding = Arc::new(Binding::new(&boundary, &complex));
-        let welds = suspected_welds(&boundary, &boundary.welded(), &complex);
-        let summary = domain_summary(&complex, settings.resolution, welds);
-        self.now.lattice = Some(Lattice { boundary: boundary.clone(), complex: complex.clone(), binding, summary });
+        let Some(subject) = self.subject.clone() else { return Ok(()) };
+        let (lattice, welds) = lattice(&subject)?;
+        let (boundary, complex) = (lattice.boundary.clone(), lattice.complex.clone());
+        self.now.lattice = Some(lattice);
         self.publish();
 
-        let mut linear = Linear::new(&boundary, &complex);
-        let (nodes, solution) = linear.solve(&boundary, &complex, &stack);
+        let mut linear = Linear::new(&subject, &complex);
+        let (asked, solution) = linear.solve(&subject, &complex);
         let solution = solution.to_vec();
         self.now.linear = Some(Arc::new(solution.clone()));
-        self.now.importance = Some(Arc::new(nodes.clone()));
+        self.now.importance = Some(Arc::new(asked.importance.nodes.clone()));
         self.now.phase = Phase::Growing;
         self.publish();
 
-        let importance = Importance {
-            cells: cell_importance(&complex, &nodes),
-            nodes: nodes.clone(),
-            region_of_cell: linear.regions().to_vec(),
-        };
-        let mut run = Run::new(Domain::body(boundary, stack, settings))?;
-        run.insert((voxel::plugin::Lattice(complex), SuspectedWelds(welds), importance, LinearSolution(solution)));
-        let solve = Solve { run, linear, changed: None, importance: nodes, stopped: None };
+        let mut run = Run::new(domain(&subject, &boundary, &asked))?;
+        let parts = (asked.importance.clone(), LinearSolution(solution));
+        run.insert((voxel::plugin::Lattice(complex), SuspectedWelds(welds), parts));
+        if let Some((_, shares)) = &asked.pixels {
+            run.insert(PixelShares(shares.clone()));
+        }
+        let solve = Solve { run, linear, changed: None, asked, stopped: None };
         self.job = Some(Job::Solve(Box::new(solve)));
         Ok(())
     }
 
     /// Tells the run what has changed: from the last valid state if there is one, else from rest.
     fn adapt(&mut self) -> Result<()> {
-        let (domain, Some(Job::Solve(solve))) = (self.subject.as_ref().map(domain), &mut self.job) else {
+        let (Some(subject), Some(lattice), Some(Job::Solve(solve))) = (&self.subject, &self.now.lattice, &mut self.job)
+        else {
             return Ok(());
         };
-        let Some(domain) = domain else { return Ok(()) };
+        let domain = domain(subject, &lattice.boundary, &solve.asked);
         solve.changed = None;
+        if let Some((_, shares)) = &solve.asked.pixels {
+            solve.run.insert(PixelShares(shares.clone()));
+        }
         let (importance, linear) = solve.parts(self.now.linear.as_deref());
         if solve.run.go_on(domain.clone(), importance, linear) {
             self.now.phase = Phase::Adapting;
@@ -295,9 +311,13 @@ impl Worker<'_> {
     /// After the last valid state has been led to what is painted: the film.
     fn grow_again(&mut self) {
         self.take_state(true);
-        let (Some(subject), Some(Job::Solve(solve))) = (&self.subject, &mut self.job) else { return };
+        let (Some(subject), Some(lattice), Some(Job::Solve(solve))) = (&self.subject, &self.now.lattice, &mut self.job)
+        else {
+            return;
+        };
         let (importance, linear) = solve.parts(self.now.linear.as_deref());
-        solve.run.restart(domain(subject), importance, linear);
+        let domain = domain(subject, &lattice.boundary, &solve.asked);
+        solve.run.restart(domain, importance, linear);
         self.now.phase = Phase::Growing;
     }
 
@@ -346,6 +366,12 @@ impl Worker<'_> {
         if let Some(Reel(film)) = solve.run.get() {
             self.now.film = film.keyframes().iter().map(State::of).collect();
         }
+        // The surface of a picture may follow its nodes otherwise than at first.
+        if let (Some(Bound(binding)), Some(lattice)) = (solve.run.get(), &mut self.now.lattice)
+            && !binding.follows_as(&lattice.binding)
+        {
+            lattice.binding = binding.clone();
+        }
         self.now.film_is_current = true;
         self.now.warped = self.now.film.last().map(|state| state.positions.clone());
         self.now.certificate = Some(outcome.certificate.clone());
@@ -367,14 +393,7 @@ impl Worker<'_> {
 impl Solve {
     /// What a run needs to know of a change.
     fn parts(&self, linear: Option<&Vec<glam::Vec3A>>) -> (Importance, LinearSolution) {
-        let cells =
-            self.run.get::<voxel::plugin::Lattice>().map(|lattice| cell_importance(&lattice.0, &self.importance));
-        let importance = Importance {
-            cells: cells.unwrap_or_default(),
-            nodes: self.importance.clone(),
-            region_of_cell: self.linear.regions().to_vec(),
-        };
-        (importance, LinearSolution(linear.cloned().unwrap_or_default()))
+        (self.asked.importance.clone(), LinearSolution(linear.cloned().unwrap_or_default()))
     }
 }
 
@@ -388,6 +407,35 @@ impl State {
     }
 }
 
-fn domain(subject: &Subject) -> Domain {
-    Domain::body(subject.boundary.clone(), subject.importance.clone(), subject.settings.clone())
+/// What is solved: the subject itself, or of a picture its pixels on the mesh they are drawn on.
+fn domain(subject: &Subject, drawn: &Arc<Boundary>, asked: &Asked) -> Domain {
+    let settings = subject.settings.clone();
+    match &asked.pixels {
+        Some((flat, _)) => Domain { boundary: drawn.clone(), ..Domain::picture(flat.clone(), settings) },
+        None => Domain::body(subject.boundary.clone(), subject.importance.clone(), settings),
+    }
+}
+
+/// The lattice of a subject, and how many of its cells are suspected of gluing sheets.
+fn lattice(subject: &Subject) -> Result<(Lattice, usize)> {
+    let resolution = subject.settings.resolution;
+    let (boundary, complex, welds) = match &subject.picture {
+        Some(picture) => {
+            let flat = &picture.ground.flat;
+            let complex = flat.lattice(resolution)?;
+            let mesh = flat_boundary(&flat.name, &complex, flat.size);
+            let mesh = mesh.with_texture(&flat.name, picture.ground.texture.to_vec());
+            (Arc::new(mesh), complex, 0)
+        }
+        None => {
+            let boundary = subject.boundary.clone();
+            let complex = voxelize(&boundary, resolution)?;
+            let welds = suspected_welds(&boundary, &boundary.welded(), &complex);
+            (boundary, complex, welds)
+        }
+    };
+    let summary = domain_summary(&complex, resolution, welds);
+    let complex = Arc::new(complex);
+    let binding = Arc::new(Binding::new(&boundary, &complex));
+    Ok((Lattice { boundary, complex, binding, summary }, welds))
 }

@@ -213,6 +213,11 @@ impl Binding {
         self.refinement.straighten(vertices.flat_map(|v| nodes[v as usize]))
     }
 
+    /// Whether vertices follow the same nodes with the same weights, for two bindings of one boundary to one complex.
+    pub fn follows_as(&self, other: &Self) -> bool {
+        self.refinement == other.refinement
+    }
+
     /// `[vertices]` means of a quantity of the complex's nodes, by the weights of each vertex's halved element.
     pub fn of_nodes(&self, values: &[f32]) -> Vec<f32> {
         let node = |i: u32| self.refinement.mean(i, values);

@@ -21,7 +21,7 @@ use crate::voxel::{Complex, Dimension, opposite};
 const NODES_PER_TASK: usize = 4096;
 
 /// The halved lattice: the complex's nodes first, then the middle of each edge.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Refinement {
     /// `[edges]` up to four nodes and their weights; unused ones repeat the first with weight 0.
     middles: Vec<([u32; 4], [f32; 4])>,

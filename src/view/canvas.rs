@@ -16,6 +16,7 @@ use super::{
     state::{Computed, Sheet, State},
     studio::{ContactMaterial, FloorPlane},
 };
+use crate::voxel::Dimension;
 
 /// What the view keeps of a body, beside its [`Body`].
 #[derive(Component)]
@@ -57,6 +58,8 @@ struct DrawnPart {
     /// As the file has it.
     own: Variant,
     own_alpha: AlphaMode,
+    /// Whether its alpha counts whatever is shown on it: a picture's outline is its own.
+    keeps_alpha: bool,
 }
 
 /// The assets a canvas is made of.
@@ -101,7 +104,7 @@ impl Canvas {
         let sheet = canvas.states[0].surface.clone();
         let has_colours = body.boundary.base_colours().is_some();
         for part in parts {
-            let file = FileMaterial::new(&body.boundary, part.material, has_colours, easel.images);
+            let file = FileMaterial::new(body, part.material, has_colours, easel.images);
             let drawn = canvas.spawn(commands, entity, part, file, &carriers, &sheet, easel);
             canvas.surface.parts.push(drawn);
         }
@@ -127,6 +130,7 @@ impl Canvas {
             is_textured: file.texture.is_some() && has_uvs,
             is_masked: matches!(file.alpha_mode, AlphaMode::Mask(_)),
             is_unlit: file.is_unlit || self.frame.is_flat,
+            is_flat: file.is_picture,
             shadow_taps: easel.quality.shadow_taps(),
             ..default()
         };
@@ -147,7 +151,10 @@ impl Canvas {
         let mesh = easel.meshes.add(part.mesh);
         let drawn = (Mesh3d(mesh.clone()), MeshMaterial3d(material.clone()), NoFrustumCulling, ChildOf(body));
         let entity = commands.spawn(drawn).id();
-        DrawnPart { entity, mesh, material, own, own_alpha: file.alpha_mode }
+        if file.is_picture {
+            commands.entity(entity).insert(NotShadowCaster);
+        }
+        DrawnPart { entity, mesh, material, own, own_alpha: file.alpha_mode, keeps_alpha: file.is_picture }
     }
 
     fn spawn_contact(&mut self, commands: &mut Commands, body: Entity, easel: &mut Easel) {
@@ -182,9 +189,12 @@ impl Canvas {
         if self.blocks.is_some() {
             return;
         }
-        let (rows, part) = Rows::of_blocks(&body.complex, &self.frame);
+        let (rows, part) = match body.complex.dimension {
+            Dimension::Two => Rows::of_squares(&body.complex, &self.frame),
+            Dimension::Three => Rows::of_blocks(&body.complex, &self.frame),
+        };
         let carriers = easel.buffers.add(ShaderBuffer::from(rows.carriers.clone()));
-        let mut file = FileMaterial::new(&body.boundary, part.material, false, easel.images);
+        let mut file = FileMaterial::new(body, part.material, false, easel.images);
         file.base.roughness = 0.8;
         let sheet = Sheet { nodes: self.nothing.clone(), normals: self.nothing.clone() };
         let mut drawn = self.spawn(commands, entity, part, file, &carriers, &sheet, easel);
@@ -315,7 +325,8 @@ impl Canvas {
                     ..part.own
                 };
                 // A field is shown on all of the surface, however transparent the file has it.
-                material.alpha_mode = if mapped.is_some() { AlphaMode::Opaque } else { part.own_alpha };
+                let is_opaque = mapped.is_some() && !part.keeps_alpha;
+                material.alpha_mode = if is_opaque { AlphaMode::Opaque } else { part.own_alpha };
                 material.field = buffer.clone().unwrap_or_else(|| self.nothing.clone());
                 material.colour_map = self.colour_map.clone();
             }
@@ -327,10 +338,17 @@ impl Canvas {
         for part in &self.surface.parts {
             let Some(mut material) = easel.materials.get(&part.material).cloned() else { continue };
             material.shown = self.ghost_shown.clone();
-            material.alpha_mode = AlphaMode::Blend;
-            material.variant =
-                Variant { coat: Coat::Ghost, is_one_sided: true, shadow_taps: part.own.shadow_taps, ..default() };
+            let coat = Coat::Ghost;
+            // A picture's ghost is the picture, before it: behind what has grown nothing of it would be seen.
+            let (alpha_mode, variant, before) = if part.own.is_flat {
+                (AlphaMode::Premultiplied, Variant { coat, ..part.own }, 0.01)
+            } else {
+                let shadow_taps = part.own.shadow_taps;
+                (AlphaMode::Blend, Variant { coat, is_one_sided: true, shadow_taps, ..default() }, 0.0)
+            };
+            (material.alpha_mode, material.variant) = (alpha_mode, variant);
             let drawn = (
+                Transform::from_xyz(0.0, 0.0, before),
                 Mesh3d(part.mesh.clone()),
                 MeshMaterial3d(easel.materials.add(material)),
                 NoFrustumCulling,

@@ -13,7 +13,7 @@ use super::{Body, ViewFrame, normals, openness};
 use crate::{
     boundary::source::NONE,
     export::{normals::Smoothing, table::Table},
-    voxel::Complex,
+    voxel::{Complex, Dimension},
 };
 
 /// Rows per parallel task.
@@ -94,7 +94,10 @@ impl Rows {
             let place = |r| complex.grid.lattice_from_source(boundary.positions[at(r).vertex as usize]).as_vec3a();
             let normal = |r| class_normals.get(at(r).class as usize).map_or(Vec3A::Z, |&n| n.into());
             let places: Vec<(Vec3A, Vec3A)> = here.iter().map(|r| (place(r), normal(r))).collect();
-            let seen = openness::openness(complex, &places);
+            let seen = match complex.dimension {
+                Dimension::Two => vec![1.0; places.len()],
+                Dimension::Three => openness::openness(complex, &places),
+            };
             mesh.insert_attribute(Mesh::ATTRIBUTE_UV_1, seen.iter().map(|&s| Vec2::new(s, 0.0)).collect::<Vec<Vec2>>());
             if let Some(colours) = &colours {
                 let colour: Vec<[f32; 4]> = here.iter().map(|r| colours[at(r).vertex as usize]).collect();
@@ -128,6 +131,19 @@ impl Rows {
                 }
             }
         }
+        Self::of_quads(complex, frame, origin, indices)
+    }
+
+    /// The cells of a flat complex: one square of four rows for each.
+    pub fn of_squares(complex: &Complex, frame: &ViewFrame) -> (Self, Part) {
+        let origin: Vec<u32> = complex.corners.iter().flat_map(|c| [c[0], c[1], c[3], c[2]]).collect();
+        let indices =
+            (0..complex.cells.len() as u32).flat_map(|cell| [0, 1, 2, 0, 2, 3].map(|k| 4 * cell + k)).collect();
+        Self::of_quads(complex, frame, origin, indices)
+    }
+
+    /// Squares of four rows each, by the nodes they hang on.
+    fn of_quads(complex: &Complex, frame: &ViewFrame, origin: Vec<u32>, indices: Vec<u32>) -> (Self, Part) {
         let corner = |k: usize| [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y][k % 4];
         let uvs: Vec<Vec2> = (0..origin.len()).map(corner).collect();
         let position = |&node: &u32| {

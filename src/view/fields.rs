@@ -18,7 +18,8 @@ pub fn sizes(complex: &Complex, state: &[Vec3A]) -> Vec<f32> {
     let of_node = |cells: &[u32; 8]| {
         let around = cells.iter().filter_map(|&cell| of_cell.get(cell as usize));
         let (sum, count) = around.fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
-        if count > 0.0 { (sum / count).max(0.0).cbrt().max(LEAST) } else { 1.0 }
+        let size = |mean: f32| complex.dimension.size(f64::from(mean.max(0.0))) as f32;
+        if count > 0.0 { size(sum / count).max(LEAST) } else { 1.0 }
     };
     complex.cells_around.par_iter().with_min_len(4096).map(of_node).collect()
 }

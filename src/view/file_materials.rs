@@ -9,8 +9,8 @@ use bevy::{
 };
 use serde_json::Value;
 
-use super::material::Base;
-use crate::boundary::{Boundary, source::Materials};
+use super::{Body, material::Base, premultiplied};
+use crate::{boundary::source::Materials, voxel::Dimension};
 
 /// Linear, sRGB about (203, 194, 184): clay, a little warm, so that it is neither skin nor stone.
 const STUDIO_GREY: Vec4 = Vec4::new(0.60, 0.54, 0.48, 1.0);
@@ -21,6 +21,8 @@ pub(super) struct FileMaterial {
     pub texture: Option<Handle<Image>>,
     pub alpha_mode: AlphaMode,
     pub is_unlit: bool,
+    /// Whether it is a picture's, premultiplied.
+    pub is_picture: bool,
 }
 
 impl FileMaterial {
@@ -29,13 +31,14 @@ impl FileMaterial {
         let colour = if has_colours { Vec4::ONE } else { STUDIO_GREY };
         let base =
             Base { colour, emissive: Vec4::ZERO, roughness: 0.55, metallic: 0.0, alpha_cutoff: 0.0, first_row: 0 };
-        Self { base, texture: None, alpha_mode: AlphaMode::Opaque, is_unlit: false }
+        Self { base, texture: None, alpha_mode: AlphaMode::Opaque, is_unlit: false, is_picture: false }
     }
 
     /// The file's material `index`; the plain one where there is none.
-    pub fn new(boundary: &Boundary, index: u32, has_colours: bool, images: &mut Assets<Image>) -> Self {
-        let materials = &boundary.source.materials;
-        let mut material = Self::plain(has_colours);
+    pub fn new(body: &Body, index: u32, has_colours: bool, images: &mut Assets<Image>) -> Self {
+        let materials = &body.boundary.source.materials;
+        let is_picture = body.complex.dimension == Dimension::Two;
+        let mut material = Self { is_picture, ..Self::plain(has_colours) };
         let Some(value) = materials.materials.get(index as usize) else { return material };
         let number = |value: &Value, default: f32| value.as_f64().map_or(default, |v| v as f32);
         let pbr = &value["pbrMetallicRoughness"];
@@ -55,6 +58,7 @@ impl FileMaterial {
         material.is_unlit = value["extensions"]["KHR_materials_unlit"].is_object();
         material.alpha_mode = match value["alphaMode"].as_str() {
             Some("MASK") => AlphaMode::Mask(number(&value["alphaCutoff"], 0.5)),
+            Some("BLEND") if is_picture => AlphaMode::Premultiplied,
             Some("BLEND") => AlphaMode::Blend,
             _ => AlphaMode::Opaque,
         };
@@ -62,14 +66,14 @@ impl FileMaterial {
             material.base.alpha_cutoff = cutoff;
         }
         if let Some(texture) = pbr["baseColorTexture"]["index"].as_u64() {
-            material.texture = load(materials, texture as usize).map(|image| images.add(image));
+            material.texture = load(materials, texture as usize, is_picture).map(|image| images.add(image));
         }
         material
     }
 }
 
 /// Decodes a texture with its mip levels; `None` where it is missing or broken, which the reader has warned of.
-fn load(materials: &Materials, texture: usize) -> Option<Image> {
+fn load(materials: &Materials, texture: usize, is_picture: bool) -> Option<Image> {
     let texture = materials.textures.get(texture)?;
     let source = texture["source"].as_u64().or_else(|| texture["extensions"]["EXT_texture_webp"]["source"].as_u64())?;
     let file = materials.images.get(source as usize)?;
@@ -82,25 +86,29 @@ fn load(materials: &Materials, texture: usize) -> Option<Image> {
             _ => ImageAddressMode::Repeat,
         }
     };
-    Some(with_mips(decoded, wrap("wrapS"), wrap("wrapT")))
+    let levels = if is_picture { premultiplied::levels(decoded) } else { levels(decoded) };
+    levels.map(|levels| texture_of(&levels, wrap("wrapS"), wrap("wrapT")))
 }
 
-/// An image as a texture that stays calm when it is far away.
-pub(super) fn with_mips(full: image::RgbaImage, wrap_u: ImageAddressMode, wrap_v: ImageAddressMode) -> Image {
+/// The image and its halves, down to one pixel.
+fn levels(full: image::RgbaImage) -> Option<Vec<image::RgbaImage>> {
     let (width, height) = full.dimensions();
-    let levels = 32 - width.max(height).leading_zeros();
-    let mut data = full.as_raw().clone();
-    let mut level = full;
-    for k in 1..levels {
+    let mut levels = vec![full];
+    for k in 1..32 - width.max(height).leading_zeros() {
         let (w, h) = ((width >> k).max(1), (height >> k).max(1));
-        level = image::imageops::resize(&level, w, h, image::imageops::FilterType::Triangle);
-        data.extend_from_slice(level.as_raw());
+        levels.push(image::imageops::resize(levels.last()?, w, h, image::imageops::FilterType::Triangle));
     }
+    Some(levels)
+}
+
+/// A texture that stays calm when it is far away.
+fn texture_of(levels: &[image::RgbaImage], wrap_u: ImageAddressMode, wrap_v: ImageAddressMode) -> Image {
+    let (width, height) = levels[0].dimensions();
     let size = Extent3d { width, height, depth_or_array_layers: 1 };
     let mut image =
         Image::new_uninit(size, TextureDimension::D2, TextureFormat::Rgba8UnormSrgb, RenderAssetUsages::RENDER_WORLD);
-    image.texture_descriptor.mip_level_count = levels;
-    image.data = Some(data);
+    image.texture_descriptor.mip_level_count = levels.len() as u32;
+    image.data = Some(levels.iter().flat_map(|level| level.as_raw()).copied().collect());
     image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
         address_mode_u: wrap_u,
         address_mode_v: wrap_v,

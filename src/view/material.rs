@@ -125,6 +125,8 @@ pub(super) struct Variant {
     pub is_masked: bool,
     /// The colour is the file's, whatever the light.
     pub is_unlit: bool,
+    /// A picture: it knows no light and no side, and its texture is premultiplied by alpha.
+    pub is_flat: bool,
     /// Only one side of a line is drawn.
     pub is_wiped: bool,
     /// Flat faces with lines along the borders of the texture square: blocks.
@@ -227,6 +229,7 @@ impl Material for SurfaceMaterial {
             ("TEXTURED", variant.is_textured),
             ("MASKED", variant.is_masked),
             ("UNLIT", variant.is_unlit),
+            ("FLAT", variant.is_flat),
             ("WIPED", variant.is_wiped),
             ("FACETED", variant.is_block),
             ("EDGED", variant.is_block),

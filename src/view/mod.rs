@@ -33,6 +33,7 @@ mod normals;
 mod openness;
 mod orbit;
 mod pick;
+mod premultiplied;
 mod present;
 mod size_legend;
 mod state;

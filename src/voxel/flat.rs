@@ -111,24 +111,60 @@ impl Flat {
     /// # Errors
     /// As [`grid`](Self::grid).
     pub fn voxelize(&self, resolution: u32) -> Result<(Complex, Shares)> {
+        let complex = self.lattice(resolution)?;
+        let shares = self.shares(&complex);
+        Ok((complex, shares))
+    }
+
+    /// The cells that inside pixels touch.
+    ///
+    /// # Errors
+    /// As [`grid`](Self::grid).
+    pub fn lattice(&self, resolution: u32) -> Result<Complex> {
         let grid = self.grid(resolution)?;
         let UVec3 { x: columns, y: rows, .. } = grid.cells;
-        let of_row: Vec<Vec<Vec<Share>>> = (0..rows)
-            .into_par_iter()
-            .map(|row| (0..columns).map(|c| self.shares_of(&grid, c, row)).collect())
-            .collect();
-        let inside: Vec<bool> = of_row.iter().flatten().map(|shares| !shares.is_empty()).collect();
-        let complex = Complex::from_flat_cells(grid, &inside);
+        let is_inside = |cell: u32| {
+            let mut is_touched = false;
+            self.overlaps(&grid, cell % columns, cell / columns, |_, _| is_touched = true);
+            is_touched
+        };
+        let inside: Vec<bool> = (0..columns * rows).into_par_iter().map(is_inside).collect();
+        Ok(Complex::from_flat_cells(grid, &inside))
+    }
+
+    /// What regions have of the cells of this picture's lattice, and what is asked of each.
+    pub fn shares(&self, complex: &Complex) -> Shares {
+        let of_cell: Vec<Vec<Share>> =
+            complex.cells.par_iter().map(|cell| self.shares_of(&complex.grid, cell.x as u32, cell.y as u32)).collect();
         let mut shares = Shares { start: vec![0], list: Vec::new() };
-        for cell in &complex.cells {
-            shares.list.extend_from_slice(&of_row[cell.y as usize][cell.x as usize]);
+        for of_cell in of_cell {
+            shares.list.extend(of_cell);
             shares.start.push(shares.list.len() as u32);
         }
-        Ok((complex, shares))
+        shares
     }
 
     /// What each region has of a cell; nothing where no inside pixel touches it.
     fn shares_of(&self, grid: &Grid, column: u32, row: u32) -> Vec<Share> {
+        let mut shares: Vec<Share> = Vec::new();
+        self.overlaps(grid, column, row, |pixel, area| {
+            let region = self.regions.as_ref().map_or(u32::MAX, |r| r.of_vertex[pixel]);
+            let (area, f) = (area as f32, self.importance[pixel]);
+            let share = Share { region, area, asked: area * f * f };
+            match shares.iter_mut().find(|s| s.region == region) {
+                Some(sum) => {
+                    sum.area += share.area;
+                    sum.asked += share.asked;
+                }
+                None => shares.push(share),
+            }
+        });
+        shares.sort_unstable_by_key(|share| share.region);
+        shares
+    }
+
+    /// Gives each inside pixel that has an area in common with a cell, and that area.
+    fn overlaps(&self, grid: &Grid, column: u32, row: u32, mut give: impl FnMut(usize, f64)) {
         let corner = |dx: u32, dy: u32| {
             grid.source_from_lattice(DVec3::new(f64::from(column + dx), f64::from(row + dy), 0.0)).truncate()
         };
@@ -144,27 +180,14 @@ impl Flat {
                 (overlap > sliver).then_some((k, overlap))
             })
         };
-        let mut shares: Vec<Share> = Vec::new();
         for (y, height) in overlaps(top, bottom, self.size.y) {
             for (x, width) in overlaps(low.x, high.x, self.size.x) {
                 let pixel = (y * self.size.x + x) as usize;
-                if !self.inside[pixel] {
-                    continue;
-                }
-                let region = self.regions.as_ref().map_or(u32::MAX, |r| r.of_vertex[pixel]);
-                let (area, f) = ((width * height) as f32, self.importance[pixel]);
-                let share = Share { region, area, asked: area * f * f };
-                match shares.iter_mut().find(|s| s.region == region) {
-                    Some(sum) => {
-                        sum.area += share.area;
-                        sum.asked += share.asked;
-                    }
-                    None => shares.push(share),
+                if self.inside[pixel] {
+                    give(pixel, width * height);
                 }
             }
         }
-        shares.sort_unstable_by_key(|share| share.region);
-        shares
     }
 }
 

@@ -10,10 +10,10 @@ use super::exhibit::{Found, SIDE};
 use crate::app::flat::{CROSSING, Drawn, crossings};
 use crate::app::{progress, scene_options};
 use crate::boundary::Regions;
-use crate::export::report::{AreaReport, Report};
+use crate::export::report::Report;
 use crate::gallery::{self, Entry, picture::PictureScene};
 use crate::picture::render::{Canvas, Painter, mark};
-use crate::picture::{FlatMesh, Picture, Pixels, areas};
+use crate::picture::{FlatMesh, Picture, Pixels};
 use crate::scene::{Scene, Source};
 use crate::schedule::{self, Domain, Settings};
 use crate::view::{Legend, Looks, Mode};
@@ -47,17 +47,16 @@ pub(super) fn exhibit(entry: &Entry) -> Result<Found> {
     };
     let start = Instant::now();
     let domain = Domain::picture(Arc::new(flat), settings.clone());
-    let mut solved = schedule::solve_domain(domain, &progress::watcher(true))?;
+    let solved = schedule::solve_domain(domain, &progress::watcher(true))?;
     let seconds = start.elapsed().as_secs_f64();
 
-    let drawn = Drawn::new(&picture, &solved);
-    let areas = areas(&field, &picture, &drawn.mesh, drawn.last());
+    let drawn = Drawn::new(&picture, &solved.boundary, &solved.outcome.frames);
+    let height = f64::from(picture.size.y);
     let mut report = Report::of(&scene, &settings, field.clamped, &solved.outcome, Vec::new());
-    report.take_areas(AreaReport::of(&areas, &field, &picture.domain, solved.complex.grid.cell_size.powi(2)));
+    report.take_areas(drawn.areas(&field, solved.complex.grid.cell_size));
 
-    let linear = std::mem::take(&mut solved.linear);
-    let classic: Vec<DVec2> =
-        solved.binding.apply(&linear).iter().map(|p| DVec2::new(p.x, drawn.height - p.y)).collect();
+    let linear = &solved.linear;
+    let classic: Vec<DVec2> = solved.binding.apply(linear).iter().map(|p| DVec2::new(p.x, height - p.y)).collect();
     let inside = field.values.iter().zip(&picture.domain).filter(|(_, inside)| **inside).map(|(f, _)| *f);
     let looks = Looks { mode: Mode::Importance, importance: Some(Arc::new(inside.collect())), ..Looks::default() };
     let legend = looks.legend().ok_or_else(|| Error::Fault("importance has no legend".into()))?;
@@ -71,7 +70,7 @@ pub(super) fn exhibit(entry: &Entry) -> Result<Found> {
     let mut faulty = own.render(&classic, &canvas).into_eight();
     redden_overlaps(&mut faulty, &canvas, &drawn.mesh, &classic);
     let mut faulty = Pixels::Eight(faulty);
-    mark(&mut faulty, &canvas, &crossings(&solved, &linear, drawn.height), MARK, CROSSING);
+    mark(&mut faulty, &canvas, &crossings(&solved, linear, height), MARK, CROSSING);
     let pictures = [
         own.render(&drawn.mesh.rest, &canvas),
         map.render(&drawn.mesh.rest, &canvas),

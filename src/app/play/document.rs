@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::app::{load, scene_options};
 use crate::boundary::Boundary;
 use crate::importance::Layer;
-use crate::paint::{Canvas, Painting, Under};
+use crate::paint::{Canvas, Ground, Painting, Under};
 use crate::scene::{Draft, Scene, Source};
 use crate::schedule::Settings;
 use crate::view::{Picker, RestShape};
@@ -52,12 +52,13 @@ impl Document {
             Wanted::Autosave(path) => (Scene::load(path)?, None),
         };
         let under = under(&scene, None)?;
+        let picture = under.ground.as_ref().map(|ground| ground.picture.clone());
         let canvas = Canvas::new(&under.boundary);
         for (index, edit) in scene.strokes.iter().enumerate() {
             edit.check(index, &canvas)?;
         }
         let mut draft = scene.into_draft();
-        let mut warnings = under.boundary.warnings.clone();
+        let mut warnings = picture.map_or_else(|| under.boundary.warnings.clone(), |picture| picture.warnings.clone());
         warnings.extend_from_slice(under.stack.warnings());
         let painting = Painting::new(Arc::new(canvas), under, std::mem::take(&mut draft.strokes));
         let boundary = painting.under().boundary.clone();
@@ -84,6 +85,11 @@ impl Document {
     pub fn picker(&self, boundary: &Arc<Boundary>) -> Picker {
         let (known, rest) = &self.picking;
         if Arc::ptr_eq(known, boundary) { Picker::prepared(known, rest.clone()) } else { Picker::default() }
+    }
+
+    /// Whether it is a picture.
+    pub fn is_picture(&self) -> bool {
+        self.painting.under().ground.is_some()
     }
 
     /// Where it comes from.
@@ -153,11 +159,17 @@ impl Document {
     }
 }
 
-/// Reads the layers of a scene that are not hidden, for its boundary or one that is read already.
+/// Reads the layers of a scene that are not hidden, for its surface or one that is read already.
 ///
 /// # Errors
 /// As [`Document::read`].
-pub fn under(scene: &Scene, boundary: Option<Arc<Boundary>>) -> Result<Under> {
+pub fn under(scene: &Scene, known: Option<&Under>) -> Result<Under> {
+    if let Some(ground) = ground(scene, known)? {
+        let Draft { layers, hidden, base, clamp, .. } = Draft::clone(scene);
+        let (boundary, stack) = (ground.mesh.clone(), Arc::new(ground.stack()));
+        return Ok(Under { layers, hidden, base, clamp, boundary, stack, ground: Some(ground) });
+    }
+    let boundary = known.map(|known| known.boundary.clone());
     let read = match &boundary {
         Some(boundary) => Boundary::clone(boundary),
         None => load::open(&scene.source)?,
@@ -170,7 +182,23 @@ pub fn under(scene: &Scene, boundary: Option<Arc<Boundary>>) -> Result<Under> {
         _ => Arc::new(prepared),
     };
     let Draft { layers, hidden, base, clamp, .. } = Draft::clone(scene);
-    Ok(Under { layers, hidden, base, clamp, boundary, stack: Arc::new(stack) })
+    Ok(Under { layers, hidden, base, clamp, boundary, stack: Arc::new(stack), ground: None })
+}
+
+/// The picture of a scene with what its layers say, if it is one.
+fn ground(scene: &Scene, known: Option<&Under>) -> Result<Option<Ground>> {
+    if let Some(known) = known {
+        let with_field = |ground: &Ground| {
+            let field = load::picture_field(scene, &ground.picture, ground.own.as_deref())?;
+            Ok(ground.with_field(field))
+        };
+        return known.ground.as_ref().map(with_field).transpose();
+    }
+    let Some(source) = load::picture_source(&scene.source)? else { return Ok(None) };
+    let name = scene.source.to_string();
+    let (picture, own) = source.read(&name, scene.background.as_deref())?;
+    let field = load::picture_field(scene, &picture, own.as_ref())?;
+    Ground::new(&name, picture, own.map(Arc::new), field).map(Some)
 }
 
 /// What a file on its own is taken for.
@@ -190,7 +218,8 @@ pub enum Dropped {
 /// A table that means nothing while nothing is open.
 pub fn recognise(path: &Path, open: Option<&Document>) -> Result<Dropped> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let has_uvs = open.is_some_and(|open| open.painting.under().boundary.vertex_uvs().is_some());
+    // On a picture another one is no layer: it opens.
+    let has_uvs = open.is_some_and(|open| !open.is_picture() && open.painting.under().boundary.vertex_uvs().is_some());
     Ok(match extension.as_str() {
         "ron" => Dropped::Scene(path.into()),
         "csv" if open.is_none() => {

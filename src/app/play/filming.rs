@@ -53,7 +53,10 @@ impl Filming {
     /// # Errors
     /// As [`Settings::new`] and [`record::check`].
     pub(super) fn begin(order: Order, draft: &Draft) -> Result<(Self, Shooting)> {
-        let settings = Settings::new(Draft { camera: camera(&order.seen_from), still: None, ..draft.clone() })?;
+        // A picture is looked at straight on.
+        let turntable = if order.picture.is_some() { 0.0 } else { draft.turntable };
+        let camera = camera(&order.seen_from);
+        let settings = Settings::new(Draft { camera, turntable, still: None, ..draft.clone() })?;
         order.check()?;
         record::check(&settings, &order.path)?;
         let shared = Arc::new(Shared::default());

@@ -4,6 +4,7 @@ use bevy::input::mouse::{MouseScrollUnit, MouseWheel};
 use bevy::prelude::*;
 use bevy::window::{CursorMoved, FileDragAndDrop};
 
+use super::document::Document;
 use super::present::Shown;
 use super::sandbox::Sandbox;
 use crate::paint::{Dab, Fill};
@@ -101,6 +102,10 @@ pub(super) fn handle(
                 None
             };
     }
+    let is_picture = sandbox.open.as_ref().is_some_and(Document::is_picture);
+    if is_picture && pointer.drag == Some(Drag::Orbit) {
+        pointer.drag = Some(Drag::Pan);
+    }
     match pointer.drag {
         Some(Drag::Orbit) if moved != Vec2::ZERO => orbit.orbit(-TURN * moved.x, TURN * moved.y),
         Some(Drag::Pan) if moved != Vec2::ZERO => orbit.pan(moved),
@@ -163,7 +168,12 @@ fn touch(sandbox: &mut Sandbox, body: &Body, hit: Option<Hit>, began: bool) {
     let (tool, brush, value) = (sandbox.choice.tool, sandbox.choice.brush, sandbox.choice.fill_value);
     if tool == Tool::Fill {
         if began {
-            let vertex = body.boundary.triangles[hit.triangle as usize][0];
+            let place = ViewFrame::of(&body.boundary).source_from_world(hit.rest_position);
+            let ground = sandbox.open.as_ref().and_then(|open| open.painting.under().ground.as_ref());
+            let vertex = match ground {
+                Some(ground) => ground.vertex_at(place),
+                None => body.boundary.triangles[hit.triangle as usize][0],
+            };
             sandbox.wishes.push(Wish::Fill(Fill::Connected { vertex, value }));
         }
         return;

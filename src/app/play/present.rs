@@ -6,14 +6,16 @@ use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use glam::Vec3A;
 
+use super::document::Document;
 use super::pointer::Viewport;
 use super::sandbox::{Look, Sandbox};
-use crate::boundary::Boundary;
 use crate::panel::{Choice, Compare};
-use crate::session::{Phase, Snapshot};
+use crate::session::{Lattice, Phase, Snapshot};
 use crate::view::{
-    Body, Extent, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, ViewFrame, VoxelColour, Wipe,
+    Body, Extent, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, SizeLegend, Studio, ViewFrame,
+    VoxelColour, Wipe,
 };
+use crate::voxel::{Complex, Dimension};
 
 /// The certified body.
 #[derive(Component)]
@@ -41,11 +43,13 @@ pub(super) fn bodies(
     sandbox: Res<Sandbox>,
     shown: Query<(Entity, &Body), With<Shown>>,
     classic: Query<Entity, With<Classic>>,
-    references: Query<Entity, With<SizeLegend>>,
+    mut references: Query<(Entity, &mut SizeLegend)>,
     orbits: Query<&Orbit>,
 ) {
     let Some(lattice) = &sandbox.snapshot.lattice else { return };
-    let is_new = !shown.iter().any(|(_, body)| Arc::ptr_eq(&body.complex, &lattice.complex));
+    let is_shown =
+        |body: &Body| Arc::ptr_eq(&body.complex, &lattice.complex) && Arc::ptr_eq(&body.binding, &lattice.binding);
+    let is_new = !shown.iter().any(|(_, body)| is_shown(body));
     let body = || Body {
         boundary: lattice.boundary.clone(),
         complex: lattice.complex.clone(),
@@ -67,21 +71,34 @@ pub(super) fn bodies(
     }
     let shows_sizes = sandbox.choice.size_legend && !orbits.is_empty();
     if !shows_sizes || is_new {
-        references.iter().for_each(|entity| commands.entity(entity).despawn());
+        references.iter().for_each(|(entity, _)| commands.entity(entity).despawn());
     }
-    if shows_sizes && (is_new || references.is_empty()) {
-        commands.spawn(references_of(&lattice.boundary));
+    if !shows_sizes {
+        return;
+    }
+    let wanted = references_of(&sandbox.snapshot, lattice);
+    match references.single_mut() {
+        Ok((_, mut legend)) if !is_new => drop(legend.set_if_neq(wanted)),
+        _ => drop(commands.spawn(wanted)),
     }
 }
 
-/// Beside the feet and before them, where they hide nothing.
-fn references_of(boundary: &Boundary) -> SizeLegend {
-    let (low, high) = boundary.bounds().unwrap_or_default();
-    let frame = ViewFrame::of(boundary);
+/// Where the reference shapes are: beside a body's feet and before them, below a picture however it grows. There they hide
+/// nothing.
+fn references_of(snapshot: &Snapshot, lattice: &Lattice) -> SizeLegend {
+    let is_flat = is_flat(&lattice.complex);
+    if is_flat {
+        let Extent { low, high } = reach(snapshot, false);
+        let largest = REFERENCE * SizeLegend::FACTORS[SizeLegend::FACTORS.len() - 1];
+        let at = Vec3::new(0.5 * (low.x + high.x), low.y - 0.6 * largest, 0.0);
+        return SizeLegend { unit: REFERENCE, is_flat, at };
+    }
+    let (low, high) = lattice.boundary.bounds().unwrap_or_default();
+    let frame = ViewFrame::of(&lattice.boundary);
     let (low, high) = (frame.world_from_source(low), frame.world_from_source(high));
     let row = REFERENCE * SizeLegend::WIDTH;
     let at = Vec3::new(0.5 * (low.x + high.x) + 0.3 * (high.x - low.x) + 0.5 * row, 0.0, high.z + 0.1);
-    SizeLegend { unit: REFERENCE, is_flat: high.z <= low.z, at }
+    SizeLegend { unit: REFERENCE, is_flat, at }
 }
 
 type Posed<'a> = (Entity, Option<&'a Pose>, &'a Rest, &'a mut Placement);
@@ -130,6 +147,11 @@ fn aside(Extent { low, high }: Extent, orbit: &Orbit) -> Vec3 {
     right * 0.5 * (1.0 + GAP) * (high - low).dot(right.abs())
 }
 
+/// Whether it is a picture's.
+fn is_flat(complex: &Complex) -> bool {
+    complex.dimension == Dimension::Two
+}
+
 fn set(commands: &mut Commands, entity: Entity, now: Option<&Pose>, wanted: Option<Pose>) {
     let same = |a: &Pose, b: &Pose| Arc::ptr_eq(&a.from, &b.from) && Arc::ptr_eq(&a.to, &b.to) && a.blend == b.blend;
     match (now, wanted) {
@@ -172,9 +194,18 @@ pub(super) fn looks(
     let snapshot = &sandbox.snapshot;
     let Some((open, lattice)) = sandbox.open.as_ref().zip(snapshot.lattice.as_ref()) else { return };
     let version = open.painting.version();
-    let fits = open.painting.ln().len() == lattice.boundary.positions.len();
-    if fits && painted.as_ref().is_none_or(|(at, values)| *at != version || values.len() != open.painting.ln().len()) {
-        *painted = Some((version, Arc::new(open.painting.importance())));
+    let vertices = lattice.boundary.positions.len();
+    let fits =
+        open.is_picture() == is_flat(&lattice.complex) && (open.is_picture() || open.painting.ln().len() == vertices);
+    if fits && painted.as_ref().is_none_or(|(at, values)| *at != version || values.len() != vertices) {
+        let importance = match &open.painting.under().ground {
+            Some(ground) => {
+                let ln = ground.carried(open.painting.ln(), &lattice.boundary);
+                ln.into_iter().map(|ln| ln.exp() as f32).collect()
+            }
+            None => open.painting.importance(),
+        };
+        *painted = Some((version, Arc::new(importance)));
     }
     let importance = painted.as_ref().filter(|_| fits).map(|(_, values)| values.clone());
     let choice = &sandbox.choice;
@@ -245,13 +276,26 @@ pub(super) fn camera(
     mut orbits: Query<&mut Orbit>,
     viewport: Res<Viewport>,
     time: Res<Time>,
-    mut framed: Local<Option<(Vec3, f32)>>,
+    studio: Option<ResMut<Studio>>,
+    (mut framed, mut was_picture): (Local<Option<(Vec3, f32)>>, Local<bool>),
 ) {
     let Ok(mut orbit) = orbits.single_mut() else { return };
     let mut wanted = *orbit;
-    wanted.orthographic = sandbox.choice.orthographic;
+    let is_picture = sandbox.open.as_ref().is_some_and(Document::is_picture);
+    wanted.orthographic = sandbox.choice.orthographic || is_picture;
     wanted.turntable = if sandbox.choice.turntable { TURNTABLE } else { 0.0 };
     wanted.turn(time.delta_secs());
+    if is_picture {
+        // Straight on, whatever is asked for.
+        (wanted.yaw, wanted.pitch) = (0.0, 0.0);
+    }
+    if let Some(mut studio) = studio {
+        studio.set_if_neq(Studio { floor: !is_picture, ..studio.clone() });
+    }
+    // A body after a picture is looked at as at first.
+    if std::mem::replace(&mut *was_picture, is_picture) && !is_picture {
+        wanted = Orbit { orthographic: sandbox.choice.orthographic, ..Orbit::default() };
+    }
     // What was framed before it had grown is framed again when it has, unless the user has looked elsewhere since.
     if sandbox.snapshot.phase == Phase::Done && framed.take() == Some((orbit.target, orbit.distance)) {
         sandbox.looks.push(Look::Frame);
@@ -260,6 +304,7 @@ pub(super) fn camera(
         let sandbox = sandbox.bypass_change_detection();
         for look in std::mem::take(&mut sandbox.looks) {
             match look {
+                Look::From(_) if is_picture => {}
                 Look::From(axis) => wanted.look_from(axis),
                 Look::Frame => {
                     let extent = bounds(&sandbox.snapshot, &sandbox.choice, &wanted);
@@ -288,7 +333,7 @@ fn bounds(snapshot: &Snapshot, choice: &Choice, orbit: &Orbit) -> Extent {
     let aside = if is_beside { aside(one, orbit) } else { Vec3::ZERO };
     let all = one.moved(aside).union(one.moved(-aside));
     match &snapshot.lattice {
-        Some(lattice) if choice.size_legend => all.union(references_of(&lattice.boundary).extent()),
+        Some(lattice) if choice.size_legend => all.union(references_of(snapshot, lattice).extent()),
         _ => all,
     }
 }
@@ -298,7 +343,7 @@ fn reach(snapshot: &Snapshot, with_linear: bool) -> Extent {
     let Some(lattice) = &snapshot.lattice else { return Extent { low: Vec3::ZERO, high: Vec3::ONE } };
     let frame = ViewFrame::of(&lattice.boundary);
     let (mut low, mut high) = lattice.boundary.bounds().unwrap_or_default();
-    let is_flat = high.z <= low.z;
+    let is_flat = is_flat(&lattice.complex);
     let last = snapshot.film.last().map(|state| &state.positions);
     let linear = snapshot.linear.as_ref().filter(|_| with_linear || last.is_none());
     for state in last.into_iter().chain(linear).filter(|state| state.len() == lattice.complex.nodes()) {

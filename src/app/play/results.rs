@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::app::flat::Drawn;
 use crate::boundary::Boundary;
 use crate::export::report::{self, Report};
 use crate::export::{self, GrowthFrame};
 use crate::importance::{self, Stack};
+use crate::paint::PaintedPicture;
 use crate::panel::{Asked, Choice};
 use crate::scene::Scene;
 use crate::schedule::{Outcome, Settings};
@@ -20,12 +23,17 @@ pub(super) struct Order {
     pub path: PathBuf,
     pub scene: Scene,
     pub stack: Arc<Stack>,
+    /// What is drawn: of a picture the mesh that carries it.
     pub boundary: Arc<Boundary>,
+    /// The picture with what was painted on it, if it is one.
+    pub picture: Option<PaintedPicture>,
     pub outcome: Arc<Outcome>,
     pub snapshot: Arc<Snapshot>,
     pub warnings: Vec<String>,
     pub choice: Choice,
     pub seen_from: Orbit,
+    /// Set when what is being written is to stop.
+    pub stop: Arc<AtomicBool>,
 }
 
 /// Writes it; where.
@@ -35,6 +43,23 @@ pub(super) fn write(order: &Order) -> Result<PathBuf> {
     order.check()?;
     let colours = importance::colours(&outcome.importance);
     let colours = |wanted: bool| wanted.then_some(colours.as_slice());
+    if let Some(picture) = &order.picture
+        && matches!(order.asked, Asked::ExportMesh | Asked::ExportGrowth)
+    {
+        let drawn = Drawn::new(&picture.ground.picture, boundary, &outcome.frames);
+        let scale = f64::from(export.scale);
+        match (order.asked, extension(path).as_str()) {
+            (Asked::ExportMesh, "png") => drawn.write_picture(path, scale, &[])?,
+            (Asked::ExportMesh, _) => return Err(Error::in_file(path, "a warped picture is written as .png")),
+            (_, "gif" | "apng" | "png" | "glb") => {
+                let stopped = || order.stop.load(Ordering::Relaxed);
+                // Colours would hide the picture: the growth is the picture's own.
+                drawn.write_growth(path, scale, export.seconds, None, &stopped)?;
+            }
+            _ => return Err(Error::in_file(path, "the growth of a picture is written as .gif, .apng or .glb")),
+        }
+        return Ok(path.clone());
+    }
     match order.asked {
         Asked::ExportMesh => {
             let last = outcome.frames.last().ok_or_else(|| Error::Fault("the film is empty".into()))?;
@@ -49,6 +74,10 @@ pub(super) fn write(order: &Order) -> Result<PathBuf> {
         _ => return Err(Error::in_file(path, "this program was built without what writes it")),
     }
     Ok(path.clone())
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
 fn is_same(a: &Path, b: &Path) -> bool {
@@ -69,6 +98,11 @@ impl Order {
         let scene = &self.scene;
         let settings =
             Settings { resolution: scene.resolution, fidelity: scene.fidelity, keys: scene.keys, reference: None };
-        Report::of(scene, &settings, self.stack.clamped(), &self.outcome, self.warnings.clone())
+        let mut report = Report::of(scene, &settings, self.stack.clamped(), &self.outcome, self.warnings.clone());
+        if let Some((picture, lattice)) = self.picture.as_ref().zip(self.snapshot.lattice.as_ref()) {
+            let drawn = Drawn::new(&picture.ground.picture, &self.boundary, &self.outcome.frames);
+            report.take_areas(drawn.areas(&picture.field(), lattice.complex.grid.cell_size));
+        }
+        report
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::prelude::Resource;
 use glam::DVec3;
@@ -16,7 +17,7 @@ use crate::importance::Layer;
 use crate::panel::{Asked, Choice, Compare, Wish};
 use crate::scene::{Draft, Source};
 use crate::session::{Session, Snapshot, Subject};
-use crate::view::{Axis, Orbit};
+use crate::view::{Axis, Mode, Orbit};
 use crate::{Error, Result};
 
 /// Everything the window is about.
@@ -45,6 +46,8 @@ pub struct Sandbox {
     pub filming: Option<super::Filming>,
     /// One line about the film that was recorded last.
     pub filmed: Option<String>,
+    /// Set when what is being written is to stop.
+    stop: Arc<AtomicBool>,
     session: Session,
     tasks: Tasks,
     marks: Marks,
@@ -90,6 +93,7 @@ impl Sandbox {
             #[cfg(feature = "record")]
             filming: None,
             filmed: None,
+            stop: Arc::default(),
             session: Session::start()?,
             tasks: Tasks::default(),
             marks: Marks::default(),
@@ -163,7 +167,10 @@ impl Sandbox {
             Some(told) if Arc::ptr_eq(&told.boundary, boundary) => {
                 if told.painting != painting {
                     told.painting = painting;
-                    self.session.set_importance(Arc::new(open.painting.stack()));
+                    match open.painting.picture() {
+                        Some(picture) => self.session.set_picture(Arc::new(picture)),
+                        None => self.session.set_importance(Arc::new(open.painting.stack())),
+                    }
                 }
             }
             _ => {
@@ -171,6 +178,7 @@ impl Sandbox {
                 self.session.open(Subject {
                     boundary: boundary.clone(),
                     importance: Arc::new(open.painting.stack()),
+                    picture: open.painting.picture().map(Arc::new),
                     settings: open.settings(),
                 });
             }
@@ -228,6 +236,11 @@ impl Sandbox {
         self.told = None;
         self.problem = None;
         self.choice.player.scrub(1.0);
+        // A picture is shown as it is, a body in the colours of its importance, until the user chooses otherwise.
+        let was_picture = self.open.as_ref().is_some_and(Document::is_picture);
+        if document.is_picture() != was_picture {
+            self.choice.mode = if was_picture { Mode::Importance } else { Mode::Plain };
+        }
         self.open = Some(document);
         self.looks.push(Look::Frame);
     }
@@ -238,11 +251,12 @@ impl Sandbox {
             (Asked::Open, [path, ..]) => self.fulfil(Wish::OpenPath(path.clone())),
             (Asked::Values, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Values { path: path.clone() })),
             (Asked::Image, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Image { path: path.clone(), range: None })),
-            (Asked::Regions, [regions, values, ..]) => self.fulfil(Wish::AddLayer(Layer::Regions {
-                regions: regions.clone(),
-                values: values.clone(),
-                per_area: false,
-            })),
+            (Asked::Regions, [regions, values, ..]) => {
+                // A statistic becomes area where the table says `value` and not `importance`.
+                let per_area = self.open.as_ref().is_some_and(Document::is_picture) && has_value(values)?;
+                let (regions, values) = (regions.clone(), values.clone());
+                self.fulfil(Wish::AddLayer(Layer::Regions { regions, values, per_area }))
+            }
             (Asked::Regions, [_]) => Ok(()),
             #[cfg(feature = "record")]
             (Asked::ExportFilm, [path, ..]) => {
@@ -293,7 +307,10 @@ impl Sandbox {
             Wish::SetResolution(resolution) => return self.set(|draft| draft.resolution = resolution),
             Wish::SetFidelity(fidelity) => return self.set(|draft| draft.fidelity = fidelity),
             Wish::SetKeys(keys) => return self.set(|draft| draft.keys = keys),
-            Wish::Cancel => self.session.cancel(),
+            Wish::Cancel => {
+                self.session.cancel();
+                std::mem::take(&mut self.stop).store(true, Ordering::Relaxed);
+            }
             Wish::StopFilm =>
             {
                 #[cfg(feature = "record")]
@@ -349,8 +366,8 @@ impl Sandbox {
     fn layers(&mut self, what: &str, change: impl FnOnce(&mut Draft)) -> Result<()> {
         let Some(open) = &self.open else { return Ok(()) };
         let scene = open.with_layers(change)?;
-        let boundary = open.painting.under().boundary.clone();
-        self.tasks.start(what, move || Done::Layers(under(&scene, Some(boundary)).map(Box::new)));
+        let known = open.painting.under().clone();
+        self.tasks.start(what, move || Done::Layers(under(&scene, Some(&known)).map(Box::new)));
         Ok(())
     }
 
@@ -386,7 +403,8 @@ impl Sandbox {
 
     /// What is to be written, of all that is there now.
     fn order(&self, asked: Asked, path: PathBuf) -> Result<results::Order> {
-        let (Some(open), Some(outcome)) = (&self.open, &self.snapshot.outcome) else {
+        let (Some(open), Some(outcome), Some(lattice)) = (&self.open, &self.snapshot.outcome, &self.snapshot.lattice)
+        else {
             return Err(Error::input("there is nothing to export yet; wait until the solver is done"));
         };
         Ok(results::Order {
@@ -394,20 +412,26 @@ impl Sandbox {
             path,
             scene: open.scene()?,
             stack: Arc::new(open.painting.stack()),
-            boundary: open.painting.under().boundary.clone(),
+            boundary: lattice.boundary.clone(),
+            picture: open.painting.picture(),
             outcome: outcome.clone(),
             snapshot: self.snapshot.clone(),
             warnings: open.warnings.clone(),
             choice: self.choice.clone(),
             seen_from: self.seen_from,
+            stop: self.stop.clone(),
         })
     }
 
     fn proposed_name(&self, asked: Asked) -> String {
         let title = self.open.as_ref().map_or_else(|| "scene".into(), Document::title);
         let stem = Path::new(&title).file_stem().map_or_else(|| title.clone(), |s| s.to_string_lossy().into_owned());
+        let is_picture = self.open.as_ref().is_some_and(Document::is_picture);
         match asked {
             Asked::SaveScene => format!("{stem}.ron"),
+            Asked::ExportMesh if is_picture => format!("{stem}-warped.png"),
+            Asked::ExportGrowth if is_picture => format!("{stem}-growth.{}", self.choice.export.picture_growth),
+            Asked::Regions if is_picture => "ids.png".into(),
             Asked::ExportMesh => format!("{stem}-warped.{}", self.choice.export.format),
             Asked::ExportGrowth => format!("{stem}-growth.glb"),
             Asked::ExportReport => format!("{stem}-report.json"),
@@ -449,6 +473,14 @@ impl Sandbox {
         let scene = open.scene();
         self.tasks.start_quietly(move || Done::Kept(keep(&scene, &path)));
     }
+}
+
+/// Whether a table gives what regions are worth in a column `value`.
+fn has_value(table: &Path) -> Result<bool> {
+    let text = std::fs::read_to_string(table).map_err(|e| Error::reading(table, e))?;
+    let header = text.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
+    let has = |name: &str| header.split(',').any(|column| column.trim().trim_start_matches('\u{feff}') == name);
+    Ok(has("value") && !has("importance"))
 }
 
 /// Takes a layer out; those above move down.

@@ -119,6 +119,7 @@ fn choose(asked: Asked, proposed: &str) -> Vec<PathBuf> {
     const MESHES: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "off"];
     const PICTURES: [&str; 4] = ["png", "jpg", "jpeg", "webp"];
     let all: Vec<&str> = MESHES.into_iter().chain(PICTURES).chain(["ron"]).collect();
+    let is_picture = PICTURES.iter().any(|extension| proposed.ends_with(extension));
     let dialog = rfd::FileDialog::new();
     let one = |dialog: rfd::FileDialog| dialog.pick_file().into_iter().collect();
     let to = |dialog: rfd::FileDialog, name: &str, extensions: &[&str]| -> Vec<PathBuf> {
@@ -134,12 +135,21 @@ fn choose(asked: Asked, proposed: &str) -> Vec<PathBuf> {
         Asked::Values => one(dialog.set_title("Importance of vertices or regions").add_filter("Table", &["csv"])),
         Asked::Image => one(dialog.set_title("Importance as a picture").add_filter("Pictures", &PICTURES)),
         Asked::Regions => {
-            let title = |title: &str| rfd::FileDialog::new().set_title(title).add_filter("Table", &["csv"]);
-            let Some(regions) = title("Which vertex belongs to which region").pick_file() else { return Vec::new() };
-            let values = title("What each region is worth").pick_file();
+            let title = |title: &str| rfd::FileDialog::new().set_title(title);
+            let regions = if is_picture {
+                title("Which pixel belongs to which region: ids as grey values").add_filter("Pictures", &PICTURES)
+            } else {
+                title("Which vertex belongs to which region").add_filter("Table", &["csv"])
+            };
+            let Some(regions) = regions.pick_file() else { return Vec::new() };
+            let values = title("What each region is worth").add_filter("Table", &["csv"]).pick_file();
             values.map(|values| vec![regions, values]).unwrap_or_default()
         }
         Asked::SaveScene => to(dialog.set_title("Save the scene"), "Scene", &["ron"]),
+        Asked::ExportMesh if is_picture => to(dialog.set_title("Save the warped picture"), "Picture", &["png"]),
+        Asked::ExportGrowth if !proposed.ends_with(".glb") => {
+            to(dialog.set_title("Save the growth"), "Animation", &["gif", "apng", "glb"])
+        }
         Asked::ExportMesh => to(dialog.set_title("Save the warped mesh"), "Mesh", &crate::panel::MESH_FORMATS),
         Asked::ExportGrowth => to(dialog.set_title("Save the growth"), "glTF", &["glb"]),
         Asked::ExportReport => to(dialog.set_title("Save the report"), "Report", &["json"]),

@@ -26,6 +26,7 @@ use texels::{Texels, straight};
 
 pub use canvas::{Canvas, MAX_DRAWN};
 pub use mark::mark;
+pub(super) use texels::dilated as seen;
 
 /// How far the outermost triangles' maps go on, in pixels of the picture: the smoothed rim of an outline and the spline's
 /// reach. Less shows the lattice's staircase along the outline; more would let bodies that touch draw over each other.

@@ -79,7 +79,7 @@ fn catmull_rom(t: f32) -> [f32; 4] {
 }
 
 /// `[pixels]` which lie within [`RIM`] pixels of the domain, diagonals included.
-fn dilated(domain: &[bool], size: UVec2) -> Vec<bool> {
+pub(in crate::picture) fn dilated(domain: &[bool], size: UVec2) -> Vec<bool> {
     let (width, height) = (size.x as usize, size.y as usize);
     let along = |source: &[bool], count: usize, stride: usize, index: usize, at: usize| {
         let (from, to) = (at.saturating_sub(RIM), (at + RIM).min(count - 1));

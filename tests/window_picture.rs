@@ -1,0 +1,305 @@
+//! Contract of the sandbox with a picture open: the camera looks straight on, strokes land where the pointer is and are
+//! solved as the command line solves them, results are written as it writes them, and another picture dropped opens.
+#![cfg(feature = "window")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use bevy::input::keyboard::{Key, KeyboardInput};
+use bevy::input::mouse::MouseButtonInput;
+use bevy::input::{ButtonState, InputPlugin};
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy::window::{CursorMoved, FileDragAndDrop, PrimaryWindow, WindowPlugin};
+use glam::DVec3;
+use homunculus::app::play::{PlayPlugin, Sandbox, Shown};
+use homunculus::importance::Layer;
+use homunculus::paint::{Edit, Fill};
+use homunculus::panel::{Asked, Wish};
+use homunculus::scene::{Draft, Scene, Source};
+use homunculus::session::Phase;
+use homunculus::view::{Looks, Mode, Orbit};
+use image::{Rgba, RgbaImage};
+
+/// Longest wait for anything here; a fault, not a slow machine, is what reaches it.
+const PATIENCE: Duration = Duration::from_secs(240);
+
+/// The middle of the view, where the picture is.
+const MIDDLE: [f32; 2] = [640.0, 360.0];
+
+/// The sandbox without a window.
+struct Stage {
+    app: App,
+    window: Entity,
+    folder: tempfile::TempDir,
+}
+
+impl Stage {
+    /// With a picture of two halves open, its lattice there.
+    fn open() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, InputPlugin, WindowPlugin::default()))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)))
+            .insert_resource(Sandbox::new(Some(folder.path().join("memory"))).unwrap())
+            .add_plugins(PlayPlugin);
+        app.finish();
+        app.cleanup();
+        app.update();
+        let window = app.world_mut().query_filtered::<Entity, With<PrimaryWindow>>().single(app.world()).unwrap();
+        let mut stage = Self { app, window, folder };
+        let halves = RgbaImage::from_fn(96, 64, |x, _| Rgba([if x < 48 { 220 } else { 40 }, 90, 60, 255]));
+        halves.save(stage.path("halves.png")).unwrap();
+        let ids = image::GrayImage::from_fn(96, 64, |x, _| image::Luma([1 + u8::from(x >= 48)]));
+        ids.save(stage.path("ids.png")).unwrap();
+        std::fs::write(stage.path("people.csv"), "region,value,name\n1,300,left\n2,100,right\n").unwrap();
+        let mut draft = Draft::of(Source::File(stage.path("halves.png")));
+        (draft.resolution, draft.fidelity, draft.keys) = (24, 1.0, 2);
+        Scene::new(draft).unwrap().save(&stage.path("halves.ron")).unwrap();
+        stage.wish(Wish::OpenPath(stage.path("halves.ron")));
+        stage.wait("the lattice", |s| s.open.is_some() && s.snapshot.lattice.is_some());
+        stage.app.update();
+        stage
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn sandbox(&mut self) -> Mut<'_, Sandbox> {
+        self.app.world_mut().resource_mut::<Sandbox>()
+    }
+
+    fn wish(&mut self, wish: Wish) {
+        self.sandbox().wishes.push(wish);
+        self.app.update();
+    }
+
+    fn wait(&mut self, what: &str, until: impl Fn(&Sandbox) -> bool) {
+        let start = Instant::now();
+        while !until(&self.sandbox()) {
+            assert!(start.elapsed() < PATIENCE, "{what} did not come: {:?}", self.sandbox().problem);
+            self.app.update();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn solved(&mut self) {
+        self.wait("the end of the solve", |s| s.snapshot.phase == Phase::Done && !s.awaits());
+        self.app.update();
+    }
+
+    /// Solved for an importance that reaches from ×1 or less to this, about: what the solver has not been told yet does not
+    /// count.
+    fn solved_for(&mut self, largest: std::ops::Range<f32>) {
+        self.wait("the end of the solve for what was asked", |s| {
+            let asked = s.snapshot.importance.as_ref().map_or(0.0, |f| f.iter().copied().fold(0.0, f32::max));
+            largest.contains(&asked) && s.snapshot.phase == Phase::Done && !s.awaits()
+        });
+        self.app.update();
+    }
+
+    fn calm(&mut self) {
+        self.wait("the end of the tasks", |s| s.busy().is_none() && s.wishes.is_empty());
+        self.app.update();
+    }
+
+    fn drag(&mut self, button: MouseButton, from: [f32; 2], to: [f32; 2]) {
+        let window = self.window;
+        let write = |app: &mut App, at: [f32; 2], state: Option<ButtonState>| {
+            app.world_mut().write_message(CursorMoved { window, position: at.into(), delta: None });
+            app.update();
+            if let Some(state) = state {
+                app.world_mut().write_message(MouseButtonInput { button, state, window });
+                app.update();
+            }
+        };
+        write(&mut self.app, from, Some(ButtonState::Pressed));
+        for k in 1..=6 {
+            let t = k as f32 / 6.0;
+            write(&mut self.app, [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis])), None);
+        }
+        write(&mut self.app, to, Some(ButtonState::Released));
+    }
+
+    fn key(&mut self, character: &str) {
+        for state in [ButtonState::Pressed, ButtonState::Released] {
+            let (window, logical_key) = (self.window, Key::Character(character.into()));
+            let key_code = KeyCode::F24;
+            let message = KeyboardInput { key_code, logical_key, state, text: None, repeat: false, window };
+            self.app.world_mut().write_message(message);
+            self.app.update();
+        }
+    }
+
+    fn drop_file(&mut self, path: &Path) {
+        let message = FileDragAndDrop::DroppedFile { window: self.window, path_buf: path.into() };
+        self.app.world_mut().write_message(message);
+        self.app.update();
+        self.app.update();
+    }
+
+    fn orbit(&mut self) -> Orbit {
+        *self.app.world_mut().query::<&Orbit>().single(self.app.world()).unwrap()
+    }
+
+    fn looks(&mut self) -> Looks {
+        self.app.world_mut().query_filtered::<&Looks, With<Shown>>().single(self.app.world()).unwrap().clone()
+    }
+
+    fn bits(&mut self) -> Vec<u64> {
+        self.sandbox().open.as_ref().unwrap().painting.ln().iter().map(|ln| ln.to_bits()).collect()
+    }
+
+    fn paint(&mut self) {
+        self.key("b");
+        self.drag(MouseButton::Left, MIDDLE, [660.0, 360.0]);
+        self.key("v");
+    }
+}
+
+#[test]
+fn the_camera_looks_straight_on_and_a_drag_moves_the_picture() {
+    let mut stage = Stage::open();
+    let start = stage.orbit();
+    assert!(start.orthographic && (start.yaw, start.pitch) == (0.0, 0.0), "{start:?}");
+    assert_eq!(stage.sandbox().choice.mode, Mode::Plain, "a picture is shown as it is");
+    for button in [MouseButton::Left, MouseButton::Right, MouseButton::Middle] {
+        let before = stage.orbit();
+        stage.drag(button, MIDDLE, [700.0, 330.0]);
+        let after = stage.orbit();
+        assert!(after.target != before.target && (after.yaw, after.pitch) == (0.0, 0.0), "{button:?}");
+    }
+    for key in ["3", "7", "t"] {
+        stage.key(key);
+        stage.app.update();
+        assert_eq!((stage.orbit().yaw, stage.orbit().pitch), (0.0, 0.0), "{key}");
+    }
+    stage.key("t");
+    // A body after it is looked at from the side again, in the colours of its importance.
+    stage.wish(Wish::Open(Source::Gallery("hand".into())));
+    stage.wait("the hand", |s| s.open.as_ref().is_some_and(|open| !open.is_picture()));
+    stage.app.update();
+    stage.app.update();
+    assert!(!stage.orbit().orthographic && stage.orbit().yaw != 0.0);
+    assert_eq!(stage.sandbox().choice.mode, Mode::Importance);
+}
+
+#[test]
+fn a_stroke_lands_under_the_pointer_is_seen_at_once_and_ends_certified() {
+    let mut stage = Stage::open();
+    stage.solved();
+    let (before, linear) = (stage.bits(), stage.sandbox().snapshot.linear.clone().unwrap());
+    stage.paint();
+    let after = stage.bits();
+    let sandbox = stage.sandbox();
+    let painting = &sandbox.open.as_ref().unwrap().painting;
+    let [Edit::Stroke { dabs, .. }] = painting.edits() else { panic!("one stroke: {:?}", sandbox.problem) };
+    // The view's middle is the picture's, to a few pixels.
+    let first = DVec3::from_array(dabs[0].centre);
+    assert!(first.distance(DVec3::new(48.0, 32.0, 0.0)) < 4.0, "{first}");
+    let positions = &painting.under().boundary.positions;
+    let changed: Vec<usize> = (0..before.len()).filter(|&v| before[v] != after[v]).collect();
+    let is_near = |v: &usize| dabs.iter().any(|dab| DVec3::from_array(dab.centre).distance(positions[*v]) < dab.radius);
+    assert!(changed.len() > 10 && changed.iter().all(is_near), "nothing else changes");
+    stage.wait("the linear solution", |s| !std::sync::Arc::ptr_eq(s.snapshot.linear.as_ref().unwrap(), &linear));
+    assert!(stage.sandbox().snapshot.dab_milliseconds.is_some());
+    stage.solved_for(1.1..3.0);
+    let snapshot = stage.sandbox().snapshot.clone();
+    assert!(snapshot.outcome.as_ref().unwrap().certificate.certified());
+    let largest = |values: &[f32]| values.iter().copied().fold(0.0, f32::max);
+    // What is shown on the picture is what was painted, at the vertices it is drawn on.
+    let shown = stage.looks().importance.unwrap();
+    assert_eq!(shown.len(), snapshot.lattice.as_ref().unwrap().boundary.positions.len());
+    assert!(largest(&shown) > 1.3, "{}", largest(&shown));
+    stage.wish(Wish::Undo);
+    assert!(stage.bits() == before, "undo restores the bits");
+    // Nothing is asked for any more.
+    stage.solved_for(0.999_999..1.000_001);
+}
+
+#[test]
+fn what_is_saved_and_written_is_what_the_command_line_makes_of_it() {
+    let mut stage = Stage::open();
+    stage.wish(Wish::SetResolution(20));
+    stage.paint();
+    stage.solved_for(1.1..3.0);
+    stage.wish(Wish::SaveTo(stage.path("saved.ron")));
+    stage.calm();
+    for (asked, name) in [
+        (Asked::ExportMesh, "window.png"),
+        (Asked::ExportGrowth, "growth.gif"),
+        (Asked::ExportGrowth, "growth.apng"),
+        (Asked::ExportGrowth, "growth.glb"),
+        (Asked::ExportReport, "report.json"),
+    ] {
+        stage.sandbox().choice.export.seconds = 0.3;
+        stage.wish(Wish::Export(asked, stage.path(name)));
+        stage.calm();
+        assert_eq!(stage.sandbox().problem, None);
+        assert!(stage.path(name).is_file(), "{name}");
+    }
+    let order = ["warp", "saved.ron", "-o", "line.png", "--report", "line.json", "--quiet"];
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_homunculus")).args(order).current_dir(stage.folder.path()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let read = |name: &str| image::open(stage.folder.path().join(name)).unwrap().to_rgba8();
+    let (window, line, rest) = (read("window.png"), read("line.png"), read("halves.png"));
+    assert_eq!(window.dimensions(), line.dimensions());
+    let apart = |a: &RgbaImage, b: &RgbaImage| {
+        let (width, height) = (a.width().min(b.width()), a.height().min(b.height()));
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let sum: u64 = pixels.map(|(x, y)| u64::from(a.get_pixel(x, y).0[0].abs_diff(b.get_pixel(x, y).0[0]))).sum();
+        sum as f64 / f64::from(width * height)
+    };
+    assert!(apart(&window, &line) < 0.5, "{}", apart(&window, &line));
+    // Sabotage: without the stroke it is another picture.
+    assert!(apart(&window, &rest) > 0.5, "{}", apart(&window, &rest));
+    // A name that says something else is refused, and nothing is written.
+    stage.wish(Wish::Export(Asked::ExportMesh, stage.path("window.obj")));
+    stage.calm();
+    assert!(stage.sandbox().problem.as_ref().unwrap().contains(".png"));
+    assert!(!stage.path("window.obj").exists());
+}
+
+#[test]
+fn regions_become_area_and_what_is_dropped_is_recognised() {
+    let mut stage = Stage::open();
+    let layer = Layer::Regions { regions: stage.path("ids.png"), values: stage.path("people.csv"), per_area: true };
+    stage.wish(Wish::AddLayer(layer));
+    stage.calm();
+    stage.solved_for(1.1..3.0);
+    assert_eq!(stage.sandbox().problem, None);
+    stage.wish(Wish::Export(Asked::ExportReport, stage.path("report.json")));
+    stage.calm();
+    let told: serde_json::Value = serde_json::from_slice(&std::fs::read(stage.path("report.json")).unwrap()).unwrap();
+    let regions = told["areas"]["regions"].as_array().unwrap();
+    let area = |k: usize| regions[k]["achieved"].as_f64().unwrap();
+    assert!((area(0) / area(1) - 3.0).abs() < 0.15, "{} {}", area(0), area(1));
+    // Filling by name, and back.
+    let before = stage.bits();
+    stage.wish(Wish::Fill(Fill::Region { name: "right".into(), value: 2.0 }));
+    assert!(stage.bits() != before, "{:?}", stage.sandbox().problem);
+    stage.wish(Wish::Undo);
+    assert!(stage.bits() == before, "undo restores the bits");
+    stage.wish(Wish::Undo);
+    assert!(stage.bits() != before, "the layer is taken back too");
+
+    // A table means nothing on a picture by itself; what is open stays.
+    stage.drop_file(&stage.path("people.csv"));
+    stage.calm();
+    assert!(stage.sandbox().problem.take().unwrap().contains("a picture has no vertices"));
+    assert!(stage.sandbox().open.as_ref().unwrap().title().contains("halves"));
+    // A damaged picture too.
+    std::fs::write(stage.path("cut.png"), &std::fs::read(stage.path("ids.png")).unwrap()[..60]).unwrap();
+    stage.drop_file(&stage.path("cut.png"));
+    stage.calm();
+    assert!(stage.sandbox().problem.take().unwrap().contains("cut.png"));
+    assert!(stage.sandbox().open.as_ref().unwrap().title().contains("halves"));
+    // A whole one opens.
+    stage.drop_file(&stage.path("ids.png"));
+    stage.wait("the other picture", |s| s.open.as_ref().is_some_and(|open| open.title() == "ids.png"));
+    assert!(stage.sandbox().open.as_ref().unwrap().is_picture());
+}
