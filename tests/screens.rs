@@ -240,12 +240,12 @@ frames 4
 shot rest.png
 frames 4
 key b
-drag 600 360 680 360 8 left
+drag 600 360 680 360 3 left
 key v
 wait done
 expect strokes 1
 expect calm
-drag 640 300 680 320 4 left
+drag 640 300 680 320 2 left
 save painted.ron
 mesh warped.png
 growth growth.gif
