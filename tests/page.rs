@@ -2,7 +2,6 @@
 //! crossings are red where Eq. 1 alone crosses and nowhere else; faults are told on the page and by the exit code. In the window: a thumbnail of each scene, and a click opens it.
 #![cfg(feature = "record")]
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
-#![expect(clippy::print_stdout, reason = "skipping is said aloud")]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -117,7 +116,10 @@ mod window {
             problem: None,
             warnings: &[],
             can_restore: false,
-            can_record: false,
+            #[cfg(feature = "record")]
+            filming: None,
+            filmed: None,
+            sizes: Vec::new(),
         };
         let mut wishes = Vec::new();
         let input = RawInput { screen_rect, events, ..RawInput::default() };

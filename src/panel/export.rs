@@ -61,7 +61,7 @@ pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &m
                 );
                 ui.add_space(6.0);
             }
-            ui.add_enabled_ui(is_done, |ui| content(ui, &mut choice.export, wishes));
+            ui.add_enabled_ui(is_done, |ui| content(ui, facts, &mut choice.export, wishes));
         });
     choice.export.is_open = is_open;
 }
