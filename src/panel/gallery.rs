@@ -18,6 +18,9 @@ const SIDE: f32 = 124.0;
 const RIM: f32 = 5.0;
 const NAME: f32 = 20.0;
 
+/// Between pictures.
+const SPACE: f32 = 6.0;
+
 const COLUMNS: usize = 6;
 
 /// Over everything, until something is chosen or it is closed.
@@ -39,8 +42,11 @@ pub(super) fn show(ctx: &Context, open: Option<&Source>, choice: &mut Choice, wi
             ));
             ui.add_space(4.0);
             let highest = (ctx.content_rect().height() - 140.0).max(200.0);
-            egui::ScrollArea::vertical().max_height(highest).show(ui, |ui| {
-                egui::Grid::new("gallery").spacing(Vec2::splat(6.0)).show(ui, |ui| {
+            // As high as all rows where there is room: a window alone would show two of them and scroll.
+            let rows = textures.len().div_ceil(COLUMNS) as f32 * (SIDE + NAME + 2.0 * RIM + SPACE);
+            let area = egui::ScrollArea::vertical().max_height(highest).min_scrolled_height(rows.min(highest));
+            area.show(ui, |ui| {
+                egui::Grid::new("gallery").spacing(Vec2::splat(SPACE)).show(ui, |ui| {
                     for (k, (entry, texture)) in textures.iter().enumerate() {
                         let is_open = matches!(open, Some(Source::Gallery(name)) if name == entry.name);
                         if card(ui, entry, texture.as_ref(), is_open) {
