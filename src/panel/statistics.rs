@@ -113,9 +113,9 @@ fn stages(ui: &mut Ui, seconds: &[(&'static str, f64)]) {
     stages.truncate(6);
     let longest = stages.first().map_or(1.0, |(_, s)| s.max(1.0e-9));
     ui.spacing_mut().item_spacing.y = 1.0;
+    ui.spacing_mut().interact_size.y = 15.0;
     for (name, s) in stages {
         ui.horizontal(|ui| {
-            ui.spacing_mut().interact_size.y = 15.0;
             ui.allocate_ui(egui::vec2(72.0, 15.0), |ui| {
                 ui.set_min_width(72.0);
                 ui.label(theme::weak(name).small());
