@@ -122,7 +122,7 @@ impl Subject {
 
     /// Triangles of the boundary that are faulty in Eq. 1 alone at λ, rising; found once. Of a picture with as many cells
     /// around as it takes to be seen.
-    pub(super) fn classic_faults(&mut self, lambda: f32) -> Arc<Vec<u32>> {
+    pub(crate) fn classic_faults(&mut self, lambda: f32) -> Arc<Vec<u32>> {
         let pose = self.classic_pose(lambda);
         let state = blend(&pose.from, &pose.to, pose.blend);
         let places = self.places.get_or_insert_with(|| Places::new(&self.boundary, &self.complex));

@@ -1,10 +1,9 @@
 //! The four pictures of a body.
 
-use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::Instant;
 
-use bevy::math::{IVec3, Vec3};
+use bevy::math::Vec3;
 use bevy::prelude::{Entity, World};
 use image::{DynamicImage, RgbImage};
 
@@ -14,7 +13,7 @@ use crate::export::report::Report;
 use crate::gallery::Entry;
 use crate::record::{Mix, Sight, Subject};
 use crate::scene::{Scene, Source};
-use crate::schedule::{self, Settings, Solved};
+use crate::schedule::{self, Settings};
 use crate::view::headless::{Renderer, Shown};
 use crate::view::{self, FIELD_OF_VIEW, Looks, Mode, Orbit, Pose, Quality};
 use crate::{Error, Result};
@@ -46,8 +45,7 @@ impl Photographer {
         let start = Instant::now();
         let solved = schedule::solve(&boundary, &stack, &settings, &progress::watcher(true))?;
         let seconds = start.elapsed().as_secs_f64();
-        let marked = Arc::new(crossing_triangles(&solved));
-        let (subject, outcome) = Subject::new(Arc::new(boundary), solved);
+        let (mut subject, outcome) = Subject::new(Arc::new(boundary), solved);
         let report = Report::of(&scene, &settings, stack.clamped(), &outcome, Vec::new());
 
         let looks =
@@ -55,7 +53,7 @@ impl Photographer {
         let legend = looks.legend();
         let last = subject.lambdas().len().saturating_sub(1);
         let at = |key: usize| subject.pose(Mix { from: key, to: key, t: 0.0 });
-        let faults = Looks { marked: Some(marked), ..Looks::default() };
+        let faults = Looks { marked: Some(subject.classic_faults(1.0)), ..Looks::default() };
         let views =
             [(Looks::default(), at(0)), (looks.clone(), at(0)), (faults, subject.classic_pose(1.0)), (looks, at(last))];
         let orbit = stand(&subject, entry);
@@ -87,25 +85,4 @@ fn stand(subject: &Subject, entry: &Entry) -> Orbit {
     let points: Vec<Vec3> = certified.into_iter().chain(classic).collect();
     let lens = Sight { yaws: &[yaw], pitch, opening: FIELD_OF_VIEW, aspect: 1.0 }.fit(&points);
     Orbit { target: lens.target, distance: lens.distance, yaw, pitch, ..Orbit::default() }
-}
-
-/// Triangles of the surface that Eq. 1 alone makes cross, and those in the cells around: a crossing alone is a line too
-/// thin to be seen.
-fn crossing_triangles(solved: &Solved) -> Vec<u32> {
-    let Solved { boundary, complex, shells, linear, .. } = solved;
-    let cell_of = |p| complex.grid.lattice_from_source(p).floor().as_ivec3();
-    let corners = |t: u32| boundary.triangles[t as usize].map(|v| cell_of(boundary.positions[v as usize]));
-    let mut cells: HashSet<IVec3> = HashSet::new();
-    for (index, shell) in shells.iter().enumerate() {
-        for face in shell.crossings(linear).into_iter().flat_map(|(a, b)| [a, b]) {
-            // The first shell is the complex's own skin.
-            if index == 0 {
-                cells.insert(complex.cells[complex.cell_of_face[face as usize] as usize]);
-            } else {
-                cells.extend(corners(face));
-            }
-        }
-    }
-    let is_near = |t: &u32| corners(*t).iter().any(|cell| cells.contains(cell));
-    (0..boundary.triangles.len() as u32).filter(is_near).collect()
 }

@@ -105,7 +105,7 @@ fn leg(paint: &mut Paint, human: &Human, q: Vec3) {
             toe.knots[2].1,
         ));
         let along = (p - a).dot((c - a).normalize());
-        let opacity = ramp(0.009 - near, 0.0, 0.008) * ramp(along, 0.008, 0.028);
+        let opacity = ramp(0.0105 - near, 0.0, 0.011) * ramp(along, 0.007, 0.029);
         paint.over(if i == 0 { "great_toe" } else { "toes" }, opacity);
     }
 }
