@@ -312,8 +312,9 @@ fn other_settings_are_solved_again_and_escape_stops() {
     let mut stage = Stage::hand();
     stage.solved();
     let lattice = stage.sandbox().snapshot.lattice.clone().unwrap();
-    stage.wish(Wish::SetResolution(24));
-    stage.wait("the finer lattice", |s| s.snapshot.lattice.as_ref().is_some_and(|l| l.summary.resolution == 24));
+    // Fine enough that it is not solved before it can be stopped.
+    stage.wish(Wish::SetResolution(96));
+    stage.wait("the finer lattice", |s| s.snapshot.lattice.as_ref().is_some_and(|l| l.summary.resolution == 96));
     assert_ne!(lattice.summary.cells, stage.sandbox().snapshot.lattice.as_ref().unwrap().summary.cells);
     stage.press(Key::Escape);
     stage.wait("the stop", |s| !s.snapshot.phase.is_busy());
@@ -328,7 +329,7 @@ fn other_settings_are_solved_again_and_escape_stops() {
     stage.wish(Wish::SetResolution(7));
     let sandbox = stage.sandbox();
     assert!(sandbox.problem.as_ref().is_some_and(|problem| problem.contains('7')), "{:?}", sandbox.problem);
-    assert_eq!(sandbox.open.as_ref().unwrap().settings().resolution, 24);
+    assert_eq!(sandbox.open.as_ref().unwrap().settings().resolution, 96);
 }
 
 #[test]

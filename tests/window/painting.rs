@@ -123,7 +123,13 @@ fn a_mirrored_stroke_paints_both_sides() {
         let mut stage = Stage::hand();
         stage.sandbox().choice.brush.mirror = mirror;
         let before = stage.bits();
-        paint(&mut stage);
+        stage.key("b");
+        // The middle may lie between two fingers; further down is the palm.
+        for y in [360.0, 440.0, 500.0, 560.0] {
+            if edits(&mut stage).is_empty() {
+                click(&mut stage, [640.0, y]);
+            }
+        }
         let after = stage.bits();
         let sandbox = stage.sandbox();
         let boundary = &sandbox.open.as_ref().unwrap().painting.under().boundary;
