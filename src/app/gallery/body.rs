@@ -52,8 +52,8 @@ impl Photographer {
             Looks { mode: Mode::Importance, importance: Some(subject.importance().clone()), ..Looks::default() };
         let legend = looks.legend();
         let last = subject.lambdas().len().saturating_sub(1);
-        let at = |key: usize| subject.pose(Mix { from: key, to: key, t: 0.0 });
         let faults = Looks { marked: Some(subject.classic_faults(1.0)), ..Looks::default() };
+        let at = |key: usize| subject.pose(Mix { from: key, to: key, t: 0.0 });
         let views =
             [(Looks::default(), at(0)), (looks.clone(), at(0)), (faults, subject.classic_pose(1.0)), (looks, at(last))];
         let orbit = stand(&subject, entry);
