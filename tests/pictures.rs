@@ -26,6 +26,8 @@ fn fields() -> RgbaImage {
 
 fn run(folder: &Path, arguments: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_homunculus"));
+    // Without a folder for it a driver complains by itself.
+    command.env("XDG_RUNTIME_DIR", folder);
     command.args(arguments.split_whitespace()).current_dir(folder).output().unwrap()
 }
 

@@ -1,4 +1,4 @@
-//! Pictures on the command line: from a scene to a warped picture, its growth, and what is filmed of it.
+//! Pictures, from a scene to a warped picture, its growth, and what is filmed of it.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,6 +17,7 @@ use super::outputs::Outputs;
 use super::scene_options::SceneOptions;
 use super::{Verdict, cancel, progress, say, warp};
 use crate::boundary::Boundary;
+use crate::collision::Shell;
 use crate::export::report::{AreaReport, Report};
 use crate::export::{self, GrowthFrame, write_atomically};
 use crate::film::blend_places;
@@ -27,6 +28,7 @@ use crate::picture::render::{Canvas, Painter, mark};
 use crate::picture::{FlatMesh, Picture, areas};
 use crate::scene::Scene;
 use crate::schedule::{self, Domain, Solved};
+use crate::voxel::Complex;
 use crate::{Error, Result};
 
 /// Frames of an animated picture in each second: smooth enough for growth, and half the size of a film's.
@@ -45,7 +47,7 @@ pub(super) fn run(options: &WarpOptions, scene: &Scene, outputs: &Outputs, loade
         return Err(Error::Cancelled);
     }
     let last = solved.film.keyframes().last().map_or(&[][..], |last| &last.positions);
-    let crossings = crossings(&solved, last, f64::from(loaded.picture.size.y));
+    let crossings = crossings(&solved.complex, last, f64::from(loaded.picture.size.y));
     let drawn = Drawn::new(&loaded.picture, &solved.boundary, &solved.outcome.frames);
     let report = report(scene, &loaded, &solved, &drawn);
     let written = write(options, scene, outputs, &solved, &drawn, &crossings, &report)?;
@@ -151,10 +153,7 @@ impl<'a> Drawn<'a> {
     ) -> Result<()> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         if extension == "glb" {
-            let mut texture = Vec::new();
-            let written = self.picture.pixels.write_png(&mut texture, self.picture.profile.as_deref());
-            written.map_err(|e| Error::writing(path, e))?;
-            let boundary = self.boundary.clone().with_texture(&self.picture.name, texture);
+            let boundary = self.boundary.clone().with_texture(&self.picture.name, self.picture.body_png()?);
             let frames: Vec<_> =
                 self.frames.iter().map(|f| GrowthFrame { lambda: f.lambda, positions: &f.positions }).collect();
             return export::growth(&boundary, &frames, colours, seconds, path);
@@ -212,16 +211,19 @@ fn write(
 }
 
 /// Edges of the outline that cross another one in a state of the nodes, in pixels with y downwards.
-pub(super) fn crossings(solved: &Solved, nodes: &[Vec3A], height: f64) -> Vec<(DVec2, DVec2)> {
-    let Some(skin) = solved.shells.first().filter(|_| nodes.len() == solved.complex.nodes()) else { return Vec::new() };
+pub(super) fn crossings(complex: &Complex, nodes: &[Vec3A], height: f64) -> Vec<(DVec2, DVec2)> {
+    if nodes.len() != complex.nodes() {
+        return Vec::new();
+    }
+    let skin = Shell::skin(complex);
     let place = |node: u32| {
-        let p = solved.complex.grid.source_from_lattice(nodes[node as usize].as_dvec3());
+        let p = complex.grid.source_from_lattice(nodes[node as usize].as_dvec3());
         DVec2::new(p.x, height - p.y)
     };
     let edges = skin.crossings(nodes).into_iter().flat_map(|(s, t)| [s, t]);
     edges
         .map(|face| {
-            let [a, b, _] = solved.complex.faces[face as usize];
+            let [a, b, _] = complex.faces[face as usize];
             (place(a), place(b))
         })
         .collect()

@@ -5,7 +5,7 @@
 //! it. A crossing pair of the skin, an inverted element and a solid within another one are shown by the triangles whose
 //! corners lie in the cells concerned.
 
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 
 use super::{elements, enclosed_solids};
 use crate::{
@@ -26,7 +26,7 @@ impl Places {
     /// Locates the boundary in the complex made from it.
     pub fn new(boundary: &Boundary, complex: &Complex) -> Self {
         let index = CellIndex::new(complex);
-        let locate = |p: &glam::DVec3| index.locate(complex.grid.lattice_from_source(*p)).unwrap_or(u32::MAX);
+        let locate = |p: &DVec3| index.locate(complex.grid.lattice_from_source(*p)).unwrap_or(u32::MAX);
         let of_vertex: Vec<u32> = boundary.positions.iter().map(locate).collect();
         Self { cells: boundary.triangles.iter().map(|t| t.map(|v| of_vertex[v as usize])).collect() }
     }
@@ -34,7 +34,8 @@ impl Places {
     /// The triangles of the boundary that are faulty in a state, rising. `shells` as for [`certify`](super::certify): the
     /// complex's skin, then the boundary.
     ///
-    /// Empty exactly where the state is certified, unless a fault lies where no triangle has a corner.
+    /// Empty exactly where the state is certified, unless a fault lies where no triangle has a corner, or the outline of a
+    /// picture's mesh crosses itself where that of its cells does not.
     pub fn faulty(&self, complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Vec<u32> {
         let mut is_bad = vec![false; complex.cells.len()];
         for cell in elements::inverted_cells(complex, positions) {

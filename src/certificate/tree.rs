@@ -1,11 +1,11 @@
-//! A tree of boxes over a set of triangles, ordered once by rest positions and fitted to every state or motion.
+//! A tree of boxes over a set of primitives (triangles, or couples of them), ordered once by rest positions and fitted to every state or motion.
 //!
 //! Warping keeps neighbours together, so the rest order stays good; fitting is one pass over the boxes.
 
 use glam::{BVec3A, Vec3A};
 use rayon::prelude::*;
 
-/// Triangles per leaf: four boxes fit a cache line pair; more tests pairs in vain, fewer deepens the tree.
+/// Primitives per leaf: four boxes fit a cache line pair; more tests pairs in vain, fewer deepens the tree.
 const LEAF: usize = 4;
 
 /// Leaves per parallel task.

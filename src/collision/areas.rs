@@ -132,9 +132,18 @@ pub struct AreaCorrection {
     /// `[regions]` what each asks for is multiplied by this, as area.
     factors: Vec<f32>,
     rounds: u32,
-    /// The round, the error (root mean square over regions) and the `[nodes]` of the best state so far.
-    best: Option<(u32, f64, Vec<Vec3A>)>,
+    best: Option<Best>,
     finished: bool,
+}
+
+/// The best state so far.
+#[derive(Debug, Clone)]
+struct Best {
+    round: u32,
+    /// Root mean square over regions.
+    error: f64,
+    nodes: Vec<Vec3A>,
+    factors: Vec<f32>,
 }
 
 /// What a correction came to.
@@ -142,8 +151,12 @@ pub struct AreaCorrection {
 pub enum Corrected {
     /// `[cells]` importance to ask for from now on.
     Ask(Vec<f32>),
-    /// Areas are right, or as near as they came: in the state given, `[nodes]`, where that is not the present one.
-    Finished(Option<Vec<Vec3A>>),
+    /// Areas were right from the first.
+    Right,
+    /// They are right now, or will not become better.
+    Ended,
+    /// They were best in an earlier state: its `[nodes]`, and the `[cells]` importance it was asked for.
+    Return(Vec<Vec3A>, Vec<f32>),
 }
 
 impl AreaCorrection {
@@ -175,22 +188,29 @@ impl AreaCorrection {
         cell: f64,
     ) -> Corrected {
         let areas = self.pieces.areas(mesh, places);
-        let is_resolved = |a: &Areas| a.rest >= LEAST_CELLS * cell && a.asked > 0.0 && a.achieved > 0.0;
+        let is_resolved = |a: &Areas| a.rest >= LEAST_CELLS * cell && a.asked > 0.0;
         let off: Vec<f64> =
             areas.iter().filter(|a| is_resolved(a)).map(|a| (a.achieved / a.asked - 1.0).abs()).collect();
         let error = (off.iter().map(|e| e * e).sum::<f64>() / off.len().max(1) as f64).sqrt();
-        let is_best = self.best.as_ref().is_none_or(|(_, best, _)| error < BETTER * best);
-        if is_best {
-            self.best = Some((self.rounds, error, nodes.to_vec()));
-        }
-        let since = self.best.as_ref().map_or(0, |(round, ..)| self.rounds - round);
-        if off.iter().all(|&e| e < GOOD_ENOUGH) || since >= PATIENCE || self.rounds >= ROUNDS {
+        if off.iter().all(|&e| e < GOOD_ENOUGH) {
             self.finished = true;
-            return Corrected::Finished(self.best.take().filter(|_| !is_best).map(|(.., nodes)| nodes));
+            return if self.rounds == 0 { Corrected::Right } else { Corrected::Ended };
+        }
+        if self.best.as_ref().is_none_or(|best| error < BETTER * best.error) {
+            let (nodes, factors) = (nodes.to_vec(), self.factors.clone());
+            self.best = Some(Best { round: self.rounds, error, nodes, factors });
+        }
+        let since = self.best.as_ref().map_or(0, |best| self.rounds - best.round);
+        if since >= PATIENCE || self.rounds >= ROUNDS {
+            self.finished = true;
+            return match self.best.take().filter(|best| best.error < error) {
+                Some(best) => Corrected::Return(best.nodes, shares.sizes(&best.factors)),
+                None => Corrected::Ended,
+            };
         }
         self.rounds += 1;
         for (factor, a) in self.factors.iter_mut().zip(&areas).filter(|(_, a)| is_resolved(a)) {
-            let change = (a.asked / a.achieved).clamp(1.0 / MOST_AT_ONCE, MOST_AT_ONCE);
+            let change = (a.asked / a.achieved.max(f64::MIN_POSITIVE)).clamp(1.0 / MOST_AT_ONCE, MOST_AT_ONCE);
             *factor = (f64::from(*factor) * change).clamp(1.0 / MOST, MOST) as f32;
         }
         Corrected::Ask(shares.sizes(&self.factors))

@@ -206,7 +206,8 @@ impl Growth {
         self.iteration == 0
     }
 
-    /// Whether a flow comes before the next iteration, where there are flows: at each new λ, and now and then at λ = 1.
+    /// Whether a flow comes before the next iteration, where there are flows: at each new λ, and at λ = 1 once more and
+    /// after each correction.
     pub fn flows(&self) -> bool {
         self.iteration == 0 || (self.at_end() && self.iteration == 1)
     }
@@ -289,7 +290,7 @@ impl Growth {
     pub fn fraction(&self) -> f32 {
         let last = self.steps.len().saturating_sub(1).max(1) as f32;
         let within = self.iteration as f32
-            / if self.step as f32 >= last { self.patience } else { ITERATIONS_PER_STEP[1] } as f32;
+            / if self.step as f32 >= last { self.patience } else { self.iterations[usize::from(self.is_key())] } as f32;
         if self.step as f32 >= last { 0.8 + 0.2 * within.min(1.0) } else { 0.8 * (self.step as f32 + within) / last }
     }
 }

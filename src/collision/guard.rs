@@ -50,8 +50,8 @@ pub enum Watch {
     End,
     /// At its end, and the surfaces on the way too: for long steps in the plane, which thin parts must not jump over.
     Surfaces,
-    /// All of it on the way too: for sheets of the boundary, which may lie nearer to each other than a step is long and must not
-    /// change places unseen, and for keyframes, whose blends are shown.
+    /// All of it on the way too: for sheets of the boundary, which may lie nearer to each other than a step is long and
+    /// must not change places unseen, and for keyframes, whose blends are shown.
     Way,
 }
 
@@ -161,7 +161,10 @@ impl Step<'_> {
     /// Nodes of what the step would break, of what has a node in `moved` if given.
     fn faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
         let mut marked = Vec::new();
-        for &part in self.watch.parts() {
+        // In the plane steps are longer.
+        let is_flat = self.complex.dimension == Dimension::Two;
+        let parts = if is_flat && self.watch == Watch::Way { Watch::Surfaces.parts() } else { self.watch.parts() };
+        for &part in parts {
             let state: Cow<'_, [Vec3A]> =
                 if part < 1.0 { Cow::Owned(blend(self.current, proposed, part)) } else { Cow::Borrowed(proposed) };
             if part == 1.0 || self.watch == Watch::Way {

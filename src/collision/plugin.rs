@@ -1,4 +1,4 @@
-//! Grow, local, contact, global, guard: one iteration of the collision optimization per run of the schedule.
+//! Grow, flow in the plane, local, contact, global, guard: one iteration of the collision optimization per run of the schedule.
 
 use bevy::prelude::*;
 use glam::{Mat3A, Quat, Vec3A};
@@ -154,20 +154,25 @@ fn correct_areas(mut domains: Query<Regional>, mut watch: ResMut<Stopwatch>) {
             let state = (warped.0.as_slice(), binding.apply(&warped.0));
             correction.correct(&shares.0, &domain.boundary, (state.0, &state.1), cell)
         });
-        match corrected {
-            Corrected::Ask(importance) => {
-                problem.0.importance = smoothed(&lattice.0, &importance);
-                sizes.0 = grow(&lattice.0, &problem.0, 1.0);
-                problem.0.weigh(&lattice.0, &sizes.0);
-                growing.0.again();
-            }
-            Corrected::Finished(best) => {
-                if let Some(best) = best {
-                    warped.0 = best;
-                }
+        let asked = match corrected {
+            Corrected::Right => continue,
+            Corrected::Ended => {
                 growing.0.rest();
+                continue;
             }
-        }
+            Corrected::Ask(importance) => {
+                growing.0.again();
+                importance
+            }
+            Corrected::Return(nodes, importance) => {
+                growing.0.rest();
+                warped.0 = nodes;
+                importance
+            }
+        };
+        problem.0.importance = smoothed(&lattice.0, &asked);
+        sizes.0 = grow(&lattice.0, &problem.0, 1.0);
+        problem.0.weigh(&lattice.0, &sizes.0);
     }
 }
 

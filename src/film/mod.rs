@@ -37,17 +37,23 @@ pub struct Film {
     passed: Vec<(f32, Vec<Vec3A>)>,
     /// Those since the last keyframe.
     passing: Vec<Vec<Vec3A>>,
+    /// Whether a surface follows the states in another way than when the keyframes were certified.
+    is_stale: bool,
 }
 
 /// Between keyframes nearer in λ than this no other is put; in the plane, where what was passed lies near to each other,
 /// than the second.
-const SHORTEST_STEP: [f32; 2] = [0.03, 0.001];
+const SHORTEST_STEP: [f32; 2] = [0.03, 1.0e-4];
 
 impl Film {
     /// Adds the next keyframe; its λ must be above the last one's, or equal, which replaces it.
-    pub fn push(&mut self, keyframe: Keyframe) {
+    pub fn push(&mut self, mut keyframe: Keyframe) {
         if self.keyframes.last().is_some_and(|last| last.lambda >= keyframe.lambda) {
             self.keyframes.pop();
+            // It was the way from the one that is replaced.
+            keyframe.way_is_clear = false;
+            let last = self.keyframes.last().map_or(0.0, |last| last.lambda);
+            self.passed.retain(|(lambda, _)| *lambda < last);
         }
         let mut passing = std::mem::take(&mut self.passing);
         // What came after a state that was returned to is no way there.
@@ -66,6 +72,11 @@ impl Film {
         self.passing.push(positions);
     }
 
+    /// Notes that a surface follows the states in another way from now on: what was certified has to be certified again.
+    pub fn follows_anew(&mut self) {
+        self.is_stale = true;
+    }
+
     /// The middle one of the states that were passed between two λ, if there are any.
     fn take_passed(&mut self, from: f32, to: f32) -> Option<(f32, Vec<Vec3A>)> {
         let first = self.passed.partition_point(|(lambda, _)| *lambda <= from);
@@ -78,11 +89,13 @@ impl Film {
         &self.keyframes
     }
 
-    /// Makes every blend of two neighbouring keyframes valid where it is looked at ([`Watch::Way`]): by new keyframes
-    /// between them, the states that were passed there first, and where that does not help, by drawing the later one back
-    /// to what can be reached from the earlier.
+    /// Makes every blend of two neighbouring keyframes valid, as [`certify_way`] has it: by new keyframes between them, the
+    /// states that were passed there first, and where that does not help, by drawing the later one back to what can be
+    /// reached from the earlier.
     pub fn mend(&mut self, complex: &Complex, shells: &mut [Shell], size: &[f32]) {
-        self.straighten(complex, shells);
+        if self.straighten(shells) || std::mem::take(&mut self.is_stale) {
+            self.certify_again(complex, shells);
+        }
         let shortest = SHORTEST_STEP[usize::from(complex.dimension == Dimension::Two)];
         let mut k = 1;
         while k < self.keyframes.len() {
@@ -104,7 +117,8 @@ impl Film {
                 }
                 continue;
             }
-            if self.straighten_blends(shells) {
+            if self.straighten_way(k, shells) {
+                while self.straighten(shells) | self.straighten_way(k, shells) {}
                 self.certify_again(complex, shells);
                 k = 1;
                 continue;
@@ -115,16 +129,21 @@ impl Film {
                 self.keyframes.insert(k, keyframe);
             } else {
                 self.keyframes[k] = reached(complex, shells, size, from, b, to.positions.clone());
+                if let Some(next) = self.keyframes.get_mut(k + 1) {
+                    // It was the way from where this one was.
+                    next.way_is_clear = false;
+                }
                 k += 1;
             }
         }
+        (self.passed, self.passing) = (Vec::new(), Vec::new());
     }
 }
 
 impl Film {
-    /// Makes a flat surface follow the complex where it must in any state that was solved, and certifies all keyframes
-    /// anew where that changed them.
-    fn straighten(&mut self, complex: &Complex, shells: &mut [Shell]) {
+    /// Makes a flat surface follow the complex where it must in any state that was solved, those passed included; whether
+    /// that changed any.
+    fn straighten(&self, shells: &mut [Shell]) -> bool {
         let mut changed = false;
         let solved = || {
             let keyframes = self.keyframes.iter().map(|k| &k.positions);
@@ -133,25 +152,14 @@ impl Film {
         while solved().filter(|positions| straighten(shells, positions)).count() > 0 {
             changed = true;
         }
-        if changed {
-            self.certify_again(complex, shells);
-        }
+        changed
     }
 
-    /// The same for the blends between keyframes whose ways are not clear; whether that changed any.
-    fn straighten_blends(&self, shells: &mut [Shell]) -> bool {
-        let mut changed = false;
-        let mut again = true;
-        while again {
-            again = false;
-            for pair in self.keyframes.windows(2).filter(|pair| !pair[1].way_is_clear) {
-                for part in (1..8).map(|k| k as f32 / 8.0) {
-                    again |= straighten(shells, &blend(&pair[0].positions, &pair[1].positions, part));
-                }
-            }
-            changed |= again;
-        }
-        changed
+    /// The same for the blends between keyframe k and the one before.
+    fn straighten_way(&self, k: usize, shells: &mut [Shell]) -> bool {
+        let [from, to] = [k - 1, k].map(|k| &self.keyframes[k].positions);
+        let blends = (1..8).map(|part| blend(from, to, part as f32 / 8.0));
+        blends.filter(|positions| straighten(shells, positions)).count() > 0
     }
 
     /// Certifies all keyframes anew, for a surface follows them in another way.
@@ -201,4 +209,57 @@ pub fn blend_places(a: &[DVec2], b: &[DVec2], t: f64) -> Vec<DVec2> {
 /// `(1 − t) a + t b`.
 pub fn blend(a: &[Vec3A], b: &[Vec3A], t: f32) -> Vec<Vec3A> {
     a.par_iter().zip(b).with_min_len(CHUNK).map(|(a, b)| *a + t * (*b - *a)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::voxel::Grid;
+    use glam::{DVec3, UVec3};
+
+    /// Two squares change places: straight there, each would go through the other; `passes`: one goes above.
+    fn mended(passes: bool) -> (Complex, Film, Vec<Vec3A>) {
+        let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::new(7, 2, 1) };
+        let inside: Vec<bool> = (0..14).map(|k| !(2..5).contains(&(k % 7))).collect();
+        let complex = Complex::from_flat_cells(grid, &inside);
+        let mut shells = vec![Shell::skin(&complex)];
+        let moved = |by: Vec3A| -> Vec<Vec3A> {
+            complex.rest.iter().map(|p| if p.x < 3.0 { *p + by } else { *p - by }).collect()
+        };
+        let last = moved(Vec3A::new(5.0, 0.0, 0.0));
+        let mut film = Film::default();
+        let keyframe = |lambda: f32, positions: Vec<Vec3A>, way_is_clear: bool| Keyframe {
+            lambda,
+            certificate: certify(&complex, &shells, &positions),
+            positions,
+            way_is_clear,
+        };
+        film.push(keyframe(0.0, complex.rest.clone(), true));
+        if passes {
+            film.pass(moved(Vec3A::new(2.5, 3.0, 0.0)));
+        }
+        film.push(keyframe(0.5, last.clone(), false));
+        // A way that is clear only as long as the keyframe before stays where it is.
+        film.push(keyframe(1.0, last.clone(), true));
+        film.mend(&complex, &mut shells, &vec![1.0; complex.cells.len()]);
+        for pair in film.keyframes().windows(2) {
+            assert!(pair[0].lambda < pair[1].lambda && pair[1].certificate.certified());
+            assert!(is_clear(&complex, &shells, &pair[0], &pair[1]));
+        }
+        (complex, film, last)
+    }
+
+    #[test]
+    fn ways_go_by_what_was_passed() {
+        let (complex, film, last) = mended(true);
+        assert_eq!(complex.bodies, 2);
+        assert_eq!(film.keyframes().len(), 4);
+        assert!(film.keyframes().iter().filter(|k| k.lambda >= 0.5).all(|k| k.positions == last));
+    }
+
+    #[test]
+    fn sabotage_without_it_the_end_is_drawn_back_and_so_is_what_follows() {
+        let (_, film, last) = mended(false);
+        assert!(film.keyframes().iter().all(|k| k.positions != last));
+    }
 }

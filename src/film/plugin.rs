@@ -57,7 +57,8 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         if growing.0.done() {
             continue;
         }
-        // In the plane parts flow far between two keyframes, further than straight ways lead.
+        // In the plane parts flow far between two keyframes, further than straight ways lead: kept are the ends of steps, and
+        // at λ = 1 the states that were corrected.
         let is_flat = complex.dimension == Dimension::Two;
         if is_flat && (growing.0.settled() && !growing.0.is_key() || growing.0.at_end() && growing.0.iteration() == 1) {
             film.pass(warped.clone());
@@ -95,6 +96,7 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         }
         let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
         while !certificate.certified() && straighten(shells, warped) {
+            film.follows_anew();
             certificate = watch.time("certificate", || certify(complex, shells, warped));
         }
         if !certificate.certified() {
@@ -103,7 +105,9 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
             growing.0.held_back();
             certificate = draw_back(complex, &sizes.0.size, shells, film, warped, &mut watch);
         }
-        leap.before = film.keyframes().last().map(|k| (k.lambda, k.positions.clone()));
+        if !is_flat {
+            leap.before = film.keyframes().last().map(|k| (k.lambda, k.positions.clone()));
+        }
         let (lambda, positions) = (growing.0.lambda(), warped.clone());
         let mut keyframe = Keyframe { lambda, positions, certificate, way_is_clear: false };
         if is_flat && let Some(last) = film.keyframes().last() {

@@ -50,8 +50,12 @@ fn names(facts: &Facts) -> [Name; 2] {
         Some(counts) => told(counts.inverted, counts.crossings),
         None => (String::new(), theme::RED),
     };
+    let is_certified = facts.snapshot.film.iter().all(|state| state.certificate.certified());
     let (certified, green) = match outcome.map(|outcome| &outcome.certificate) {
-        Some(found) => told(found.inverted(), found.crossings() + found.surface_crossings()),
+        Some(found) => {
+            let (text, _) = told(found.inverted(), found.crossings() + found.surface_crossings());
+            (text, if is_certified { theme::GREEN } else { theme::RED })
+        }
         None => (String::new(), theme::AMBER),
     };
     [

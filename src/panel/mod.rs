@@ -69,8 +69,8 @@ pub struct Facts<'a> {
     /// The film that is being recorded.
     #[cfg(feature = "record")]
     pub filming: Option<FilmFacts<'a>>,
-    /// One line about the film that was recorded last.
-    pub filmed: Option<&'a str>,
+    /// One line about the film that was recorded last, and whether it is certified.
+    pub filmed: Option<(&'a str, bool)>,
     /// Where the names of the reference shapes go, window's points.
     pub sizes: Vec<(egui::Pos2, &'static str)>,
 }

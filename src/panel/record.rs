@@ -162,8 +162,8 @@ fn form(ui: &mut Ui, facts: &Facts, record: &mut RecordChoice, wishes: &mut Vec<
             });
         });
     });
-    if let Some(told) = facts.filmed {
-        ui.label(RichText::new(told).small().color(theme::GREEN));
+    if let Some((told, is_certified)) = facts.filmed {
+        ui.label(RichText::new(told).small().color(if is_certified { theme::GREEN } else { theme::RED }));
     }
 }
 

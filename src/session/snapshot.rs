@@ -83,6 +83,8 @@ pub struct Snapshot {
     pub error: Option<String>,
     /// Milliseconds from the last change of importance to its linear solution.
     pub dab_milliseconds: Option<f64>,
+    /// How many orders have been answered with a linear solution so.
+    pub dabs: u64,
 }
 
 /// What was voxelized.

@@ -190,6 +190,7 @@ impl Worker<'_> {
         self.now.warped = None;
         self.now.certificate = None;
         self.now.outcome = None;
+        self.now.dabs += 1;
         self.now.dab_milliseconds = at.map(|at| at.elapsed().as_secs_f64() * 1e3).or(self.now.dab_milliseconds);
         self.publish();
         Ok(())

@@ -21,6 +21,8 @@ use super::{Body, Pose, ViewFrame, drawn::Rows, state::Computed};
 pub struct Unhurried {
     /// Whether something else is to be shown than what is; kept by the view.
     pub is_waiting: bool,
+    /// How many states were shown so, of all bodies that are there; kept by the view.
+    pub shown: u64,
 }
 
 /// A state and what is drawn of it.

@@ -39,6 +39,8 @@ pub(super) struct Canvas {
     bound: Pose,
     /// What will be, as soon as it is computed.
     awaited: Option<Awaited>,
+    /// How many were.
+    pub shown_unhurried: u64,
     nothing: Handle<ShaderBuffer>,
     colour_map: Handle<ShaderBuffer>,
     /// Box around what is drawn, without the placement.
@@ -96,6 +98,7 @@ impl Canvas {
             states: vec![state],
             bound: Pose::still(rest.clone()),
             awaited: None,
+            shown_unhurried: 0,
             rest,
             colour_map: nothing.clone(),
             nothing,
@@ -212,6 +215,7 @@ impl Canvas {
                 self.states.push(State::new(&state, computed, easel.buffers));
             }
             if let Some(awaited) = self.awaited.take() {
+                self.shown_unhurried += 1;
                 self.bound = awaited.pose;
             }
         }
@@ -310,8 +314,8 @@ impl Canvas {
             let is_shown = is_blocks == has_blocks;
             for part in &layer.parts {
                 commands.entity(part.entity).insert(if is_shown { Visibility::Inherited } else { Visibility::Hidden });
-                // Of two bodies in one place one casts the shadow on the floor.
-                if looks.wipe.is_some_and(|wipe| wipe.keeps_left) {
+                // Of two bodies in one place one casts the shadow on the floor; pictures cast none.
+                if part.keeps_alpha || looks.wipe.is_some_and(|wipe| wipe.keeps_left) {
                     commands.entity(part.entity).insert(NotShadowCaster);
                 } else {
                     commands.entity(part.entity).remove::<NotShadowCaster>();

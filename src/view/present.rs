@@ -90,7 +90,8 @@ fn pose(mut bodies: Query<(&Body, Option<&Pose>, &mut Canvas)>, mut easels: Ease
     }
     let is_waiting = bodies.iter().any(|(_, _, canvas)| canvas.is_waiting());
     if let Some(unhurried) = &mut easels.unhurried {
-        unhurried.set_if_neq(Unhurried { is_waiting });
+        let shown = bodies.iter().map(|(_, _, canvas)| canvas.shown_unhurried).sum();
+        unhurried.set_if_neq(Unhurried { is_waiting, shown });
     }
 }
 

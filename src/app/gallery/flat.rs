@@ -70,7 +70,7 @@ pub(super) fn exhibit(entry: &Entry) -> Result<Found> {
     let mut faulty = own.render(&classic, &canvas).into_eight();
     redden_overlaps(&mut faulty, &canvas, &drawn.mesh, &classic);
     let mut faulty = Pixels::Eight(faulty);
-    mark(&mut faulty, &canvas, &crossings(&solved, linear, height), MARK, CROSSING);
+    mark(&mut faulty, &canvas, &crossings(&solved.complex, linear, height), MARK, CROSSING);
     let pictures = [
         own.render(&drawn.mesh.rest, &canvas),
         map.render(&drawn.mesh.rest, &canvas),

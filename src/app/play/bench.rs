@@ -82,10 +82,10 @@ enum Stage {
     Solving(Instant),
     /// A lattice of the resolution with this index is being made.
     Refining(usize),
-    /// A dab was made in that version of the snapshot, at the resolution with this index.
+    /// A dab was made when so many had been answered, at the resolution with this index.
     Dab(Instant, u64, usize),
-    /// Its linear solution is there, and is to be shown.
-    Showing(Instant, usize),
+    /// Its linear solution is there, and is to be shown: it will be when so many states have been.
+    Showing(Instant, usize, u64),
 }
 
 /// A measurement.
@@ -212,20 +212,20 @@ fn measure(
                 bench.stage = begin(&mut sandbox, index, 0);
             }
         }
-        Stage::Dab(at, version, index) => {
+        Stage::Dab(at, answered, index) => {
             let snapshot = &sandbox.snapshot;
-            let Some(milliseconds) =
-                snapshot.dab_milliseconds.filter(|_| snapshot.version > version && !snapshot.film_is_current)
-            else {
+            let Some(milliseconds) = snapshot.dab_milliseconds.filter(|_| snapshot.dabs > answered) else {
                 return;
             };
             bench.dabs.push(milliseconds);
-            bench.stage = Stage::Showing(at, index);
+            // What is on its way already is older.
+            let ahead = 1 + u64::from(unhurried.is_waiting);
+            bench.stage = Stage::Showing(at, index, unhurried.shown + ahead);
         }
         Stage::Showing(..) => {}
     }
-    if let Stage::Showing(at, index) = bench.stage
-        && !unhurried.is_waiting
+    if let Stage::Showing(at, index, count) = bench.stage
+        && (unhurried.shown >= count || !unhurried.is_waiting)
     {
         bench.dabs_shown.push(since(at) * 1e3 + frame);
         if bench.dabs.len() < DABS {
@@ -251,9 +251,9 @@ fn refine(sandbox: &mut Sandbox, index: usize) -> Stage {
 
 /// Makes a dab that is measured.
 fn begin(sandbox: &mut Sandbox, index: usize, count: usize) -> Stage {
-    let (at, version) = (Instant::now(), sandbox.snapshot.version);
+    let (at, answered) = (Instant::now(), sandbox.snapshot.dabs);
     dab(sandbox, count);
-    Stage::Dab(at, version, index)
+    Stage::Dab(at, answered, index)
 }
 
 /// What came of the dabs, which are used up.

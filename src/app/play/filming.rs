@@ -182,6 +182,9 @@ fn solved(order: &Order) -> Result<Solved> {
 
 /// What has become of a film, in one line.
 pub(super) fn told(path: &Path, certified: bool) -> String {
-    let verdict = if certified { "every frame certified" } else { "not all it shows is certified" };
+    let verdict = match certified {
+        true => "the growth is certified in every frame",
+        false => "the growth is not certified in every frame",
+    };
     format!("Recorded {}: {verdict}.", path.display())
 }

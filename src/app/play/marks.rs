@@ -8,6 +8,7 @@ use crate::certificate::Places;
 use crate::collision::Shell;
 use crate::film::blend;
 use crate::session::Lattice;
+use crate::transfer::Binding;
 use crate::voxel::Complex;
 
 /// λ is looked at in steps of one over this: finer ones are not told apart while the film plays.
@@ -25,6 +26,8 @@ pub(super) struct Marks {
     tools: Option<Arc<Tools>>,
     /// V' that was looked at.
     linear: Option<State>,
+    /// How the surface that was looked at follows it.
+    binding: Option<Arc<Binding>>,
     /// By step of λ.
     found: Vec<Option<Faulty>>,
     is_looking: bool,
@@ -33,6 +36,7 @@ pub(super) struct Marks {
 /// What the search needs of a lattice.
 struct Tools {
     complex: Arc<Complex>,
+    binding: Arc<Binding>,
     shells: Vec<Shell>,
     places: Places,
 }
@@ -64,23 +68,30 @@ impl Marks {
         if self.is_looking || linear.len() != lattice.complex.nodes() {
             return None;
         }
-        if !self.linear.as_ref().is_some_and(|known| Arc::ptr_eq(known, linear)) {
+        let is_known = self.linear.as_ref().is_some_and(|known| Arc::ptr_eq(known, linear))
+            && self.binding.as_ref().is_some_and(|known| Arc::ptr_eq(known, &lattice.binding));
+        if !is_known {
             self.linear = Some(linear.clone());
+            self.binding = Some(lattice.binding.clone());
             self.found = vec![None; STEPS + 1];
         }
         if self.found[step].is_some() {
             return None;
         }
         self.is_looking = true;
-        let tools = self.tools.clone().filter(|tools| Arc::ptr_eq(&tools.complex, &lattice.complex));
+        let tools = self.tools.clone().filter(|tools| {
+            Arc::ptr_eq(&tools.complex, &lattice.complex) && Arc::ptr_eq(&tools.binding, &lattice.binding)
+        });
         Some(Search { lattice: lattice.clone(), tools, linear: linear.clone(), step })
     }
 
     /// A search has ended.
     pub fn take(&mut self, found: Found) {
         self.is_looking = false;
+        let is_asked = self.linear.as_ref().is_some_and(|known| Arc::ptr_eq(known, &found.linear))
+            && self.binding.as_ref().is_some_and(|known| Arc::ptr_eq(known, &found.tools.binding));
         self.tools = Some(found.tools);
-        if self.linear.as_ref().is_some_and(|known| Arc::ptr_eq(known, &found.linear)) {
+        if is_asked {
             self.found[found.step] = Some(found.faulty);
         }
     }
@@ -100,7 +111,7 @@ impl Search {
         let Self { lattice: Lattice { boundary, complex, binding, .. }, tools, linear, step } = self;
         let tools = tools.unwrap_or_else(|| {
             let shells = vec![Shell::skin(&complex), Shell::boundary(&boundary, (*binding).clone(), &complex)];
-            Arc::new(Tools { places: Places::new(&boundary, &complex), complex, shells })
+            Arc::new(Tools { places: Places::new(&boundary, &complex), complex, binding, shells })
         });
         let state = blend(&tools.complex.rest, &linear, step as f32 / STEPS as f32);
         let faulty = Arc::new(tools.places.faulty(&tools.complex, &tools.shells, &state));

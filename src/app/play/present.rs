@@ -9,6 +9,7 @@ use glam::Vec3A;
 use super::document::Document;
 use super::pointer::Viewport;
 use super::sandbox::{Look, Sandbox};
+use crate::boundary::Boundary;
 use crate::panel::{Choice, Compare};
 use crate::session::{Lattice, Phase, Snapshot};
 use crate::view::{
@@ -184,11 +185,14 @@ fn certified_pose(sandbox: &Sandbox) -> Option<Pose> {
     (fits(&&pose.from) && fits(&&pose.to)).then_some(pose)
 }
 
+/// The version of what was painted, what it was painted on, and what is drawn.
+type PaintedAt = (u64, [Arc<Boundary>; 2]);
+
 /// Colours, ghost, wipe.
 pub(super) fn looks(
     mut commands: Commands,
     sandbox: Res<Sandbox>,
-    mut painted: Local<Option<(u64, Arc<Vec<f32>>)>>,
+    mut painted: Local<Option<(PaintedAt, Arc<Vec<f32>>)>>,
     mut shown: Query<(Entity, &mut Looks, Has<Ghost>, Has<Classic>)>,
 ) {
     let snapshot = &sandbox.snapshot;
@@ -197,7 +201,11 @@ pub(super) fn looks(
     let vertices = lattice.boundary.positions.len();
     let fits =
         open.is_picture() == is_flat(&lattice.complex) && (open.is_picture() || open.painting.ln().len() == vertices);
-    if fits && painted.as_ref().is_none_or(|(at, values)| *at != version || values.len() != vertices) {
+    let boundaries = [open.painting.under().boundary.clone(), lattice.boundary.clone()];
+    let is_of = |(at, known): &PaintedAt| {
+        *at == version && known.iter().zip(&boundaries).all(|(known, boundary)| Arc::ptr_eq(known, boundary))
+    };
+    if fits && painted.as_ref().is_none_or(|(at, _)| !is_of(at)) {
         let importance = match &open.painting.under().ground {
             Some(ground) => {
                 let ln = ground.carried(open.painting.ln(), &lattice.boundary);
@@ -205,7 +213,7 @@ pub(super) fn looks(
             }
             None => open.painting.importance(),
         };
-        *painted = Some((version, Arc::new(importance)));
+        *painted = Some(((version, boundaries), Arc::new(importance)));
     }
     let importance = painted.as_ref().filter(|_| fits).map(|(_, values)| values.clone());
     let choice = &sandbox.choice;

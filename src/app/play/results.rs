@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::app::flat::Drawn;
+use crate::app::flat::{Drawn, crossings};
 use crate::boundary::Boundary;
 use crate::export::report::{self, Report};
 use crate::export::{self, GrowthFrame};
@@ -49,7 +49,12 @@ pub(super) fn write(order: &Order) -> Result<PathBuf> {
         let drawn = Drawn::new(&picture.ground.picture, boundary, &outcome.frames);
         let scale = f64::from(export.scale);
         match (order.asked, extension(path).as_str()) {
-            (Asked::ExportMesh, "png") => drawn.write_picture(path, scale, &[])?,
+            (Asked::ExportMesh, "png") => {
+                let last = order.snapshot.film.last().zip(order.snapshot.lattice.as_ref());
+                let height = f64::from(picture.ground.picture.size.y);
+                let crossings = last.map(|(last, lattice)| crossings(&lattice.complex, &last.positions, height));
+                drawn.write_picture(path, scale, &crossings.unwrap_or_default())?;
+            }
             (Asked::ExportMesh, _) => return Err(Error::in_file(path, "a warped picture is written as .png")),
             (_, "gif" | "apng" | "png" | "glb") => {
                 let stopped = || order.stop.load(Ordering::Relaxed);

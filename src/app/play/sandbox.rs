@@ -44,8 +44,8 @@ pub struct Sandbox {
     /// The film that is being recorded.
     #[cfg(feature = "record")]
     pub filming: Option<super::Filming>,
-    /// One line about the film that was recorded last.
-    pub filmed: Option<String>,
+    /// One line about the film that was recorded last, and whether it is certified.
+    pub filmed: Option<(String, bool)>,
     /// Set when what is being written is to stop.
     stop: Arc<AtomicBool>,
     session: Session,
@@ -201,13 +201,15 @@ impl Sandbox {
                     open.saved(file, edition);
                 }
             }),
+            // Whoever stopped it knows.
+            Done::Written(Err(Error::Cancelled)) => Ok(()),
             Done::Written(path) => path.map(|_| ()),
             #[cfg(feature = "record")]
             Done::Filmed(film) => {
                 self.filming = None;
                 match film {
                     Ok((path, certified)) => {
-                        self.filmed = Some(super::filming::told(&path, certified));
+                        self.filmed = Some((super::filming::told(&path, certified), certified));
                         Ok(())
                     }
                     // Whoever stopped it knows.
@@ -236,6 +238,8 @@ impl Sandbox {
         self.told = None;
         self.problem = None;
         self.choice.player.scrub(1.0);
+        #[cfg(feature = "record")]
+        self.choice.record.name.clear();
         // A picture is shown as it is, a body in the colours of its importance, until the user chooses otherwise.
         let was_picture = self.open.as_ref().is_some_and(Document::is_picture);
         if document.is_picture() != was_picture {
@@ -447,6 +451,7 @@ impl Sandbox {
 
     /// The program is being closed: unsaved work stays to be restored, what is saved leaves nothing behind.
     pub(super) fn close(&self) {
+        self.stop.store(true, Ordering::Relaxed);
         #[cfg(feature = "record")]
         if let Some(filming) = &self.filming {
             filming.stop_and_wait();

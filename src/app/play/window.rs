@@ -136,7 +136,7 @@ fn panels(
         can_restore: sandbox.memory.can_restore(),
         #[cfg(feature = "record")]
         filming: sandbox.filming.as_ref().map(|film| preview::facts(film, filming)),
-        filmed: sandbox.filmed.as_deref(),
+        filmed: sandbox.filmed.as_ref().map(|(told, certified)| (told.as_str(), *certified)),
         sizes,
     };
     let middle = panel::draw(&mut root, &facts, &mut choice, &mut wishes);
