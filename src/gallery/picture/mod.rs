@@ -50,7 +50,7 @@ static SCENES: [Kept; 4] = [
             one_line: "a map of Africa whose countries have the area of their population",
             reference: "importance ∝ (population / area)^(1/2), so that area becomes population; population 2014: World Bank, World Development Indicators, SP.POP.TOTL (no figure for Eritrea and Western \
                         Sahara, which keep their size); outlines after Natural Earth 1:110m, public domain",
-            resolution: 256,
+            resolution: 160,
             fidelity: 1.0,
             camera: [0.0, 0.0],
         },
