@@ -2,8 +2,8 @@
 //!
 //! # Theory
 //! A piecewise linear map of the complex is injective if every element is positively oriented and the mapped boundary
-//! does not cross itself; with several bodies also none may lie inside another. The surface that is written, B', is made of flat triangles between moved vertices, so it is
-//! checked too: it must have no crossing that the input had not.
+//! does not cross itself; with several bodies also none may lie inside another. The surface that is written, B', is made of
+//! flat triangles between moved vertices, so it is checked too: it must have no crossing that the input had not.
 //!
 //! # Practice
 //! Exact signs (crate `robust`) behind an interval filter; boxes in a tree that is refitted. Touching counts as crossing.

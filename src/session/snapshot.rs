@@ -114,8 +114,8 @@ pub struct State {
 impl Lattice {
     /// `[vertices]` size achieved over size asked for, > 0; `asked` is `[cells]`.
     ///
-    /// Per cell the cube root of its volume (of a picture the square root of its area), averaged over the cells around each node, then over the nodes that carry a
-    /// vertex.
+    /// Per cell the cube root of its volume (of a picture the square root of its area), averaged over the cells around each
+    /// node, then over the nodes that carry a vertex.
     pub fn reached(&self, asked: &[f32], positions: &[Vec3A]) -> Vec<f32> {
         let (complex, binding) = (&*self.complex, &*self.binding);
         let volumes = volume_ratios(complex, positions);
