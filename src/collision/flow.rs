@@ -1,4 +1,4 @@
-//! Flow: in the plane, areas find their own way.
+//! Flow: on maps, areas find their own way.
 //!
 //! # Theory
 //! The local–global iteration fits cells one by one. Where sizes change much within a few cells it proposes folds, the

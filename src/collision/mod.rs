@@ -8,7 +8,7 @@
 //! # Changes from the paper
 //! Fig. 5 projects edge lengths one by one and diverges as printed (see `reference`). Its ingredients stay: stepwise
 //! scaling by λ, spheres of radius r_i found by spatial hashing. The guard is new: it keeps the promise. So is the
-//! [flow](flow_step) by which each step of λ begins in the plane.
+//! [flow](flow_step) by which each step of λ begins on maps.
 //!
 //! # Practice
 //! One multigrid cycle is enough for the global step where nothing touches; with contacts, which the cycle does not

@@ -83,6 +83,11 @@ pub struct Holds(pub Vec<u8>);
 #[derive(Component, Debug, Default)]
 pub struct HeldBack(pub Guarded);
 
+/// Marks domains that are led by a flow: maps, whose areas matter more than the shape of a cell. Where single parts of a
+/// picture grow, the teeth of a crocodile, a flow gives them their area and takes their outline.
+#[derive(Component, Debug)]
+pub struct Flowing;
+
 /// Adds the stages.
 pub struct CollisionPlugin;
 
@@ -112,6 +117,9 @@ fn start(
         if let Some(picture) = domain.picture.as_ref().filter(|picture| picture.regions.is_some()) {
             let correction = watch.time("grow", || AreaCorrection::new(picture, &domain.boundary));
             commands.entity(entity).insert(correction);
+            if picture.is_map() {
+                commands.entity(entity).insert(Flowing);
+            }
         }
         let problem = watch.time("grow", || {
             Problem::of_cells(complex, asked_sizes(complex, &importance.cells), domain.settings.fidelity)
@@ -190,12 +198,12 @@ fn grow_sizes(
     }
 }
 
-type Flowing<'a> = (&'a Lattice, &'a Sizes, &'a BoundaryAtRisk, &'a Growing, &'a mut Shells, &'a mut Warped);
+type Led<'a> = (&'a Lattice, &'a Sizes, &'a BoundaryAtRisk, &'a Growing, &'a mut Shells, &'a mut Warped);
 
-/// Flat domains begin each step of λ by a flow.
-fn flow(mut domains: Query<Flowing>, mut watch: ResMut<Stopwatch>) {
+/// Maps begin each step of λ by a flow.
+fn flow(mut domains: Query<Led, With<Flowing>>, mut watch: ResMut<Stopwatch>) {
     for (Lattice(complex), Sizes(asked), at_risk, Growing(growth), mut shells, mut warped) in &mut domains {
-        if growth.done() || complex.dimension != Dimension::Two || !growth.flows() {
+        if growth.done() || !growth.flows() {
             continue;
         }
         let guarded = if at_risk.0 { shells.0.len() } else { 1 };

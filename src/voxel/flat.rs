@@ -77,6 +77,13 @@ impl Shares {
 }
 
 impl Flat {
+    /// Whether it is a map: regions take more than half of it, and what they ask for is area.
+    pub fn is_map(&self) -> bool {
+        let Some(regions) = &self.regions else { return false };
+        let inside = || self.inside.iter().zip(&regions.of_vertex).filter(|(inside, _)| **inside);
+        2 * inside().filter(|(_, region)| **region != u32::MAX).count() > inside().count()
+    }
+
     /// Corners of the box around the inside pixels, y downwards.
     fn bounds(&self) -> Option<(UVec2, UVec2)> {
         let (mut low, mut high) = (UVec2::MAX, UVec2::ZERO);
