@@ -24,6 +24,9 @@ const ROUNDS: u32 = 24;
 /// No correction where the worst region is nearer to its area than this.
 const GOOD_ENOUGH: f64 = 0.004;
 
+/// Root mean square error from which on a flow leads a correction; below, it would only shake what is nearly there.
+const FAR_OFF: f64 = 0.02;
+
 /// A region's factor stays within this range and its inverse: what cannot be reached is not asked for ever louder.
 const MOST: f64 = 2.0;
 
@@ -149,8 +152,8 @@ struct Best {
 /// What a correction came to.
 #[derive(Debug)]
 pub enum Corrected {
-    /// `[cells]` importance to ask for from now on.
-    Ask(Vec<f32>),
+    /// `[cells]` importance to ask for from now on, and whether areas are so far off that a flow should lead there.
+    Ask(Vec<f32>, bool),
     /// Areas were right from the first.
     Right,
     /// They are right now, or will not become better.
@@ -213,6 +216,6 @@ impl AreaCorrection {
             let change = (a.asked / a.achieved.max(f64::MIN_POSITIVE)).clamp(1.0 / MOST_AT_ONCE, MOST_AT_ONCE);
             *factor = (f64::from(*factor) * change).clamp(1.0 / MOST, MOST) as f32;
         }
-        Corrected::Ask(shares.sizes(&self.factors))
+        Corrected::Ask(shares.sizes(&self.factors), error > FAR_OFF)
     }
 }

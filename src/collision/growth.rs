@@ -207,7 +207,7 @@ impl Growth {
     }
 
     /// Whether a flow comes before the next iteration, where there are flows: at each new λ, and at λ = 1 once more and
-    /// after each correction.
+    /// after corrections that want it.
     pub fn flows(&self) -> bool {
         self.iteration == 0 || (self.at_end() && self.iteration == 1)
     }
@@ -260,15 +260,20 @@ impl Growth {
         self.iteration
     }
 
-    /// Settles once more at this λ, for what is asked was changed.
-    pub fn again(&mut self) {
-        self.iteration = 1;
+    /// Settles once more at this λ, for what is asked was changed; with a flow first, or without.
+    pub fn again(&mut self, is_led: bool) {
+        self.iteration = if is_led { 1 } else { 2 };
         self.motion = f32::INFINITY;
     }
 
     /// Settles no more: the state at λ = 1 is kept as it is.
     pub fn rest(&mut self) {
         self.iteration = self.patience;
+    }
+
+    /// Whether what is asked was just changed.
+    pub fn is_corrected(&self) -> bool {
+        self.at_end() && self.iteration > 0 && self.motion.is_infinite()
     }
 
     /// Settles for less at λ = 1.

@@ -168,8 +168,8 @@ fn correct_areas(mut domains: Query<Regional>, mut watch: ResMut<Stopwatch>) {
                 growing.0.rest();
                 continue;
             }
-            Corrected::Ask(importance) => {
-                growing.0.again();
+            Corrected::Ask(importance, is_led) => {
+                growing.0.again(is_led);
                 importance
             }
             Corrected::Return(nodes, importance) => {

@@ -41,9 +41,12 @@ pub struct Film {
     is_stale: bool,
 }
 
-/// Between keyframes nearer in λ than this no other is put; in the plane, where what was passed lies near to each other,
-/// than the second.
-const SHORTEST_STEP: [f32; 2] = [0.03, 1.0e-4];
+/// Between keyframes nearer in λ than this no other is put.
+const SHORTEST_STEP: f32 = 0.03;
+
+/// The same in the plane, where what was passed lies near to each other: as a part of the distance of the keyframes that
+/// were asked for.
+const SHORTEST_FLAT_STEP: f32 = 0.008;
 
 impl Film {
     /// Adds the next keyframe; its λ must be above the last one's, or equal, which replaces it.
@@ -96,7 +99,10 @@ impl Film {
         if self.straighten(shells) || std::mem::take(&mut self.is_stale) {
             self.certify_again(complex, shells);
         }
-        let shortest = SHORTEST_STEP[usize::from(complex.dimension == Dimension::Two)];
+        let shortest = match complex.dimension {
+            Dimension::Two => SHORTEST_FLAT_STEP / self.keyframes.len().saturating_sub(1).max(1) as f32,
+            Dimension::Three => SHORTEST_STEP,
+        };
         let mut k = 1;
         while k < self.keyframes.len() {
             let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);

@@ -60,7 +60,7 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         // In the plane parts flow far between two keyframes, further than straight ways lead: kept are the ends of steps, and
         // at λ = 1 the states that were corrected.
         let is_flat = complex.dimension == Dimension::Two;
-        if is_flat && (growing.0.settled() && !growing.0.is_key() || growing.0.at_end() && growing.0.iteration() == 1) {
+        if is_flat && (growing.0.settled() && !growing.0.is_key() || growing.0.is_corrected()) {
             film.pass(warped.clone());
         }
         if !growing.0.settled() {
