@@ -121,10 +121,14 @@ pub(super) fn load_picture(scene: &Scene, options: &SceneOptions, source: Pictur
         warnings.push("no importance was given, so the picture stays as it is; see --sphere and --regions".into());
     }
     tell(&warnings, options);
-    let regions = field.regions.as_ref().map(|r| Regions { names: r.names.clone(), of_vertex: r.of_pixel.clone() });
-    let flat =
-        Flat { name, size: picture.size, inside: picture.domain.clone(), importance: field.values.clone(), regions };
+    let flat = flat(name, &picture, &field);
     Ok(LoadedPicture { picture, field, flat, settings: settings(scene, options), warnings })
+}
+
+/// A picture and its importance as the engine takes them.
+pub(super) fn flat(name: String, picture: &Picture, field: &Field) -> Flat {
+    let regions = field.regions.as_ref().map(|r| Regions { names: r.names.clone(), of_vertex: r.of_pixel.clone() });
+    Flat { name, size: picture.size, inside: picture.domain.clone(), importance: field.values.clone(), regions }
 }
 
 /// What a scene's layers say of a picture. Importance that is given takes the place of a built-in picture's own.
@@ -168,12 +172,12 @@ fn tell(warnings: &[String], options: &SceneOptions) {
 }
 
 fn settings(scene: &Scene, options: &SceneOptions) -> Settings {
-    Settings {
-        resolution: scene.resolution,
-        fidelity: scene.fidelity,
-        keys: scene.keys,
-        reference: options.reference.map(Into::into),
-    }
+    Settings { reference: options.reference.map(Into::into), ..settings_of(scene) }
+}
+
+/// How a scene is solved, by the method itself.
+pub(super) fn settings_of(scene: &Scene) -> Settings {
+    Settings { resolution: scene.resolution, fidelity: scene.fidelity, keys: scene.keys, reference: None }
 }
 
 /// The boundary a source names. A built-in scene brings its importance as the vertex attribute [`OWN`].
@@ -220,8 +224,13 @@ fn layers(scene: &Scene, boundary: &mut Boundary) -> Result<Vec<Layer>> {
 fn is_table_of_regions(path: &Path) -> Result<bool> {
     let text = std::fs::read(path).map_err(|e| Error::reading(path, e))?;
     let text = String::from_utf8_lossy(&text);
-    let header = text.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
-    Ok(header.split(',').any(|column| column.trim().trim_start_matches('\u{feff}') == "region"))
+    Ok(has_column(&text, "region"))
+}
+
+/// Whether the first line of a table that is no comment names a column.
+pub(super) fn has_column(table: &str, name: &str) -> bool {
+    let header = table.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
+    header.split(',').any(|column| column.trim().trim_start_matches('\u{feff}') == name)
 }
 
 fn warnings(scene: &Scene, boundary: &Boundary, stack: &Stack) -> Vec<String> {

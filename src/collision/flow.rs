@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use super::Asked;
 use crate::{
     edge::{CHUNK, Multigrid, conjugate_gradients},
-    voxel::{Complex, Dimension},
+    voxel::{Complex, Dimension, KUHN_FLAT},
 };
 
 /// A cell gains or loses at most this much at once, as `ln` of its area.
@@ -34,7 +34,10 @@ const STEPS: u32 = 12;
 const TOLERANCE: f64 = 0.01;
 
 /// The corners of a flat cell's two triangles.
-const ELEMENTS: [[usize; 3]; 2] = [[0, 1, 3], [0, 3, 2]];
+const ELEMENTS: [[usize; 3]; 2] = {
+    let [[a, b, c, _], [d, e, f, _]] = KUHN_FLAT;
+    [[a, b, c], [d, e, f]]
+};
 
 /// Where a flow would take the nodes of a flat complex: every cell nearer to the area asked for.
 pub fn flow_step(complex: &Complex, asked: &Asked, positions: &[Vec3A]) -> Vec<Vec3A> {

@@ -45,24 +45,17 @@ pub const MESH_FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
 
 pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     let mut is_open = choice.export.is_open;
-    egui::Window::new("Export")
-        .open(&mut is_open)
-        .collapsible(false)
-        .resizable(false)
-        .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(ctx.content_rect().center())
-        .show(ctx, |ui| {
-            ui.set_width(360.0);
-            let is_done = facts.snapshot.outcome.is_some();
-            if !is_done {
-                ui.label(
-                    egui::RichText::new("There is something to export as soon as the solver is done.")
-                        .color(theme::AMBER),
-                );
-                ui.add_space(6.0);
-            }
-            ui.add_enabled_ui(is_done, |ui| content(ui, facts, &mut choice.export, wishes));
-        });
+    theme::dialog(ctx, "Export", &mut is_open).show(ctx, |ui| {
+        ui.set_width(360.0);
+        let is_done = facts.snapshot.outcome.is_some();
+        if !is_done {
+            ui.label(
+                egui::RichText::new("There is something to export as soon as the solver is done.").color(theme::AMBER),
+            );
+            ui.add_space(6.0);
+        }
+        ui.add_enabled_ui(is_done, |ui| content(ui, facts, &mut choice.export, wishes));
+    });
     choice.export.is_open = is_open;
 }
 

@@ -30,35 +30,27 @@ pub(super) fn show(ctx: &Context, open: Option<&Source>, choice: &mut Choice, wi
     }
     let textures = textures(ctx);
     let mut chosen = None;
-    egui::Window::new("Gallery")
-        .open(&mut choice.gallery)
-        .collapsible(false)
-        .resizable(false)
-        .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(ctx.content_rect().center())
-        .show(ctx, |ui| {
-            ui.label(theme::weak(
-                "Each is warped as soon as it is open. Rest the pointer on one to read what it shows.",
-            ));
-            ui.add_space(4.0);
-            let highest = (ctx.content_rect().height() - 140.0).max(200.0);
-            // As high as all rows where there is room: a window alone would show two of them and scroll.
-            let rows = textures.len().div_ceil(COLUMNS) as f32 * (SIDE + NAME + 2.0 * RIM + SPACE);
-            let area = egui::ScrollArea::vertical().max_height(highest).min_scrolled_height(rows.min(highest));
-            area.show(ui, |ui| {
-                egui::Grid::new("gallery").spacing(Vec2::splat(SPACE)).show(ui, |ui| {
-                    for (k, (entry, texture)) in textures.iter().enumerate() {
-                        let is_open = matches!(open, Some(Source::Gallery(name)) if name == entry.name);
-                        if card(ui, entry, texture.as_ref(), is_open) {
-                            chosen = Some(entry.name);
-                        }
-                        if k % COLUMNS == COLUMNS - 1 {
-                            ui.end_row();
-                        }
+    theme::dialog(ctx, "Gallery", &mut choice.gallery).show(ctx, |ui| {
+        ui.label(theme::weak("Each is warped as soon as it is open. Rest the pointer on one to read what it shows."));
+        ui.add_space(4.0);
+        let highest = (ctx.content_rect().height() - 140.0).max(200.0);
+        // As high as all rows where there is room: a window alone would show two of them and scroll.
+        let rows = textures.len().div_ceil(COLUMNS) as f32 * (SIDE + NAME + 2.0 * RIM + SPACE);
+        let area = egui::ScrollArea::vertical().max_height(highest).min_scrolled_height(rows.min(highest));
+        area.show(ui, |ui| {
+            egui::Grid::new("gallery").spacing(Vec2::splat(SPACE)).show(ui, |ui| {
+                for (k, (entry, texture)) in textures.iter().enumerate() {
+                    let is_open = matches!(open, Some(Source::Gallery(name)) if name == entry.name);
+                    if card(ui, entry, texture.as_ref(), is_open) {
+                        chosen = Some(entry.name);
                     }
-                });
+                    if k % COLUMNS == COLUMNS - 1 {
+                        ui.end_row();
+                    }
+                }
             });
         });
+    });
     if let Some(name) = chosen {
         wishes.push(Wish::Open(Source::Gallery(name.into())));
         choice.gallery = false;

@@ -42,29 +42,23 @@ const KEYS: [(&str, &[(&str, &str)]); 4] = [
 ];
 
 pub(super) fn show(ctx: &Context, choice: &mut Choice) {
-    egui::Window::new("Keys and mouse")
-        .open(&mut choice.help)
-        .collapsible(false)
-        .resizable(false)
-        .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(ctx.content_rect().center())
-        .show(ctx, |ui| {
-            egui::Grid::new("help").num_columns(2).spacing([40.0, 18.0]).show(ui, |ui| {
-                for pair in KEYS.chunks(2) {
-                    for (title, keys) in pair {
-                        ui.vertical(|ui| {
-                            ui.label(egui::RichText::new(*title).heading().strong());
-                            egui::Grid::new(*title).num_columns(2).spacing([14.0, 5.0]).show(ui, |ui| {
-                                for (key, does) in *keys {
-                                    ui.label(egui::RichText::new(*key).color(theme::ACCENT));
-                                    ui.label(*does);
-                                    ui.end_row();
-                                }
-                            });
+    theme::dialog(ctx, "Keys and mouse", &mut choice.help).show(ctx, |ui| {
+        egui::Grid::new("help").num_columns(2).spacing([40.0, 18.0]).show(ui, |ui| {
+            for pair in KEYS.chunks(2) {
+                for (title, keys) in pair {
+                    ui.vertical(|ui| {
+                        ui.label(egui::RichText::new(*title).heading().strong());
+                        egui::Grid::new(*title).num_columns(2).spacing([14.0, 5.0]).show(ui, |ui| {
+                            for (key, does) in *keys {
+                                ui.label(egui::RichText::new(*key).color(theme::ACCENT));
+                                ui.label(*does);
+                                ui.end_row();
+                            }
                         });
-                    }
-                    ui.end_row();
+                    });
                 }
-            });
+                ui.end_row();
+            }
         });
+    });
 }

@@ -72,19 +72,13 @@ pub fn open(choice: &mut Choice, title: &str) {
 
 pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     let mut is_open = choice.record.is_open;
-    egui::Window::new("Record")
-        .open(&mut is_open)
-        .collapsible(false)
-        .resizable(false)
-        .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(ctx.content_rect().center())
-        .show(ctx, |ui| {
-            ui.set_width(WIDTH);
-            match &facts.filming {
-                Some(film) => progress(ui, film, wishes),
-                None => form(ui, facts, &mut choice.record, wishes),
-            }
-        });
+    theme::dialog(ctx, "Record", &mut is_open).show(ctx, |ui| {
+        ui.set_width(WIDTH);
+        match &facts.filming {
+            Some(film) => progress(ui, film, wishes),
+            None => form(ui, facts, &mut choice.record, wishes),
+        }
+    });
     choice.record.is_open = is_open && choice.record.is_open;
 }
 

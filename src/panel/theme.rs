@@ -153,6 +153,16 @@ pub fn row<R>(ui: &mut Ui, name: &str, hint: &str, content: impl FnOnce(&mut Ui)
     .inner
 }
 
+/// A dialog in the middle of the window, as large as what is in it.
+pub fn dialog<'open>(ctx: &egui::Context, title: &'open str, is_open: &'open mut bool) -> egui::Window<'open> {
+    egui::Window::new(title)
+        .open(is_open)
+        .collapsible(false)
+        .resizable(false)
+        .pivot(egui::Align2::CENTER_CENTER)
+        .default_pos(ctx.content_rect().center())
+}
+
 /// Text in the background.
 pub fn weak(text: impl Into<String>) -> RichText {
     RichText::new(text).color(WEAK)

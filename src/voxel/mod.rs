@@ -19,7 +19,7 @@ pub mod plugin;
 mod rasterize;
 mod welds;
 
-pub use complex::{Complex, DIRECTIONS, Dimension, KUHN, NEIGHBOURS, opposite};
+pub use complex::{Complex, DIRECTIONS, Dimension, KUHN, KUHN_FLAT, NEIGHBOURS, opposite};
 pub use flat::{Flat, Share, Shares};
 pub use rasterize::rasterize;
 pub use welds::suspected_welds;

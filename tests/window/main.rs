@@ -8,6 +8,7 @@ mod comparing;
 #[cfg(feature = "record")]
 mod filming;
 mod painting;
+mod picture;
 mod stage;
 
 use std::path::PathBuf;

@@ -23,7 +23,7 @@ pub const PATIENCE: Duration = Duration::from_secs(240);
 pub struct Stage {
     pub app: App,
     pub window: Entity,
-    folder: tempfile::TempDir,
+    pub folder: tempfile::TempDir,
 }
 
 impl Stage {

@@ -13,7 +13,7 @@ use crate::export::report::Report;
 use crate::gallery::Entry;
 use crate::record::{Mix, Sight, Subject};
 use crate::scene::{Scene, Source};
-use crate::schedule::{self, Settings};
+use crate::schedule;
 use crate::view::headless::{Renderer, Shown};
 use crate::view::{self, FIELD_OF_VIEW, Looks, Mode, Orbit, Pose, Quality};
 use crate::{Error, Result};
@@ -40,8 +40,7 @@ impl Photographer {
     pub fn exhibit(&mut self, entry: &Entry) -> Result<Found> {
         let scene = Scene::new(scene_options::fresh(&Source::Gallery(entry.name.into())))?;
         let (boundary, stack) = load::prepare(&scene, load::open(&scene.source)?)?;
-        let settings =
-            Settings { resolution: scene.resolution, fidelity: scene.fidelity, keys: scene.keys, reference: None };
+        let settings = load::settings_of(&scene);
         let start = Instant::now();
         let solved = schedule::solve(&boundary, &stack, &settings, &progress::watcher(true))?;
         let seconds = start.elapsed().as_secs_f64();

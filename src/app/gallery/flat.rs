@@ -8,16 +8,14 @@ use image::{Rgb, RgbImage, RgbaImage};
 
 use super::exhibit::{Found, SIDE};
 use crate::app::flat::{CROSSING, Drawn, crossings};
-use crate::app::{progress, scene_options};
-use crate::boundary::Regions;
+use crate::app::{load, progress, scene_options};
 use crate::export::report::Report;
 use crate::gallery::{self, Entry, picture::PictureScene};
 use crate::picture::render::{Canvas, Painter, mark};
 use crate::picture::{FlatMesh, Picture, Pixels};
 use crate::scene::{Scene, Source};
-use crate::schedule::{self, Domain, Settings};
+use crate::schedule::{self, Domain};
 use crate::view::{Legend, Looks, Mode};
-use crate::voxel::Flat;
 use crate::{Error, Result};
 
 /// Space around what is drawn, pixels.
@@ -36,15 +34,8 @@ const MARK: f64 = 3.0;
 pub(super) fn exhibit(entry: &Entry) -> Result<Found> {
     let scene = Scene::new(scene_options::fresh(&Source::Gallery(entry.name.into())))?;
     let PictureScene { picture, field, .. } = gallery::picture::open(entry.name)?;
-    let settings =
-        Settings { resolution: scene.resolution, fidelity: scene.fidelity, keys: scene.keys, reference: None };
-    let flat = Flat {
-        name: scene.source.to_string(),
-        size: picture.size,
-        inside: picture.domain.clone(),
-        importance: field.values.clone(),
-        regions: field.regions.as_ref().map(|r| Regions { names: r.names.clone(), of_vertex: r.of_pixel.clone() }),
-    };
+    let settings = load::settings_of(&scene);
+    let flat = load::flat(scene.source.to_string(), &picture, &field);
     let start = Instant::now();
     let domain = Domain::picture(Arc::new(flat), settings.clone());
     let solved = schedule::solve_domain(domain, &progress::watcher(true))?;

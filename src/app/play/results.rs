@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::app::flat::{Drawn, crossings};
+use crate::app::load::settings_of;
 use crate::boundary::Boundary;
 use crate::export::report::{self, Report};
 use crate::export::{self, GrowthFrame};
@@ -12,7 +13,7 @@ use crate::importance::{self, Stack};
 use crate::paint::PaintedPicture;
 use crate::panel::{Asked, Choice};
 use crate::scene::Scene;
-use crate::schedule::{Outcome, Settings};
+use crate::schedule::Outcome;
 use crate::session::Snapshot;
 use crate::view::Orbit;
 use crate::{Error, Result};
@@ -101,8 +102,7 @@ impl Order {
 
     pub fn report(&self) -> Report {
         let scene = &self.scene;
-        let settings =
-            Settings { resolution: scene.resolution, fidelity: scene.fidelity, keys: scene.keys, reference: None };
+        let settings = settings_of(scene);
         let mut report = Report::of(scene, &settings, self.stack.clamped(), &self.outcome, self.warnings.clone());
         if let Some((picture, lattice)) = self.picture.as_ref().zip(self.snapshot.lattice.as_ref()) {
             let drawn = Drawn::new(&picture.ground.picture, &self.boundary, &self.outcome.frames);

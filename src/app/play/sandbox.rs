@@ -12,6 +12,7 @@ use super::marks::{Faulty, Marks};
 use super::memory::{Memory, keep};
 use super::results;
 use super::tasks::{Done, Tasks};
+use crate::app::load::has_column;
 use crate::boundary::Boundary;
 use crate::importance::Layer;
 use crate::panel::{Asked, Choice, Compare, Wish};
@@ -483,9 +484,7 @@ impl Sandbox {
 /// Whether a table gives what regions are worth in a column `value`.
 fn has_value(table: &Path) -> Result<bool> {
     let text = std::fs::read_to_string(table).map_err(|e| Error::reading(table, e))?;
-    let header = text.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
-    let has = |name: &str| header.split(',').any(|column| column.trim().trim_start_matches('\u{feff}') == name);
-    Ok(has("value") && !has("importance"))
+    Ok(has_column(&text, "value") && !has_column(&text, "importance"))
 }
 
 /// Takes a layer out; those above move down.

@@ -1,55 +1,27 @@
 //! Contract of the sandbox with a picture open: the camera looks straight on, strokes land where the pointer is and are
 //! solved as the command line solves them, results are written as it writes them, and another picture dropped opens.
-#![cfg(feature = "window")]
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-use std::time::{Duration, Instant};
 
-use bevy::input::keyboard::{Key, KeyboardInput};
-use bevy::input::mouse::MouseButtonInput;
-use bevy::input::{ButtonState, InputPlugin};
 use bevy::prelude::*;
-use bevy::time::TimeUpdateStrategy;
-use bevy::window::{CursorMoved, FileDragAndDrop, PrimaryWindow, WindowPlugin};
+use bevy::window::FileDragAndDrop;
 use glam::DVec3;
-use homunculus::app::play::{PlayPlugin, Sandbox, Shown};
+use homunculus::app::play::Shown;
 use homunculus::importance::Layer;
 use homunculus::paint::{Edit, Fill};
 use homunculus::panel::{Asked, Wish};
 use homunculus::scene::{Draft, Scene, Source};
 use homunculus::session::Phase;
-use homunculus::view::{Looks, Mode, Orbit};
+use homunculus::view::{Looks, Mode};
 use image::{Rgba, RgbaImage};
 
-/// Longest wait for anything here; a fault, not a slow machine, is what reaches it.
-const PATIENCE: Duration = Duration::from_secs(240);
-
-/// The middle of the view, where the picture is.
-const MIDDLE: [f32; 2] = [640.0, 360.0];
-
-/// The sandbox without a window.
-struct Stage {
-    app: App,
-    window: Entity,
-    folder: tempfile::TempDir,
-}
+use super::stage::{MIDDLE, Stage};
 
 impl Stage {
     /// With a picture of two halves open, its lattice there.
     fn open() -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let mut app = App::new();
-        app.add_plugins((MinimalPlugins, InputPlugin, WindowPlugin::default()))
-            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)))
-            .insert_resource(Sandbox::new(Some(folder.path().join("memory"))).unwrap())
-            .add_plugins(PlayPlugin);
-        app.finish();
-        app.cleanup();
-        app.update();
-        let window = app.world_mut().query_filtered::<Entity, With<PrimaryWindow>>().single(app.world()).unwrap();
-        let mut stage = Self { app, window, folder };
+        let mut stage = Self::empty();
         let halves = RgbaImage::from_fn(96, 64, |x, _| Rgba([if x < 48 { 220 } else { 40 }, 90, 60, 255]));
         halves.save(stage.path("halves.png")).unwrap();
         let ids = image::GrayImage::from_fn(96, 64, |x, _| image::Luma([1 + u8::from(x >= 48)]));
@@ -64,33 +36,6 @@ impl Stage {
         stage
     }
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn sandbox(&mut self) -> Mut<'_, Sandbox> {
-        self.app.world_mut().resource_mut::<Sandbox>()
-    }
-
-    fn wish(&mut self, wish: Wish) {
-        self.sandbox().wishes.push(wish);
-        self.app.update();
-    }
-
-    fn wait(&mut self, what: &str, until: impl Fn(&Sandbox) -> bool) {
-        let start = Instant::now();
-        while !until(&self.sandbox()) {
-            assert!(start.elapsed() < PATIENCE, "{what} did not come: {:?}", self.sandbox().problem);
-            self.app.update();
-            std::thread::sleep(Duration::from_millis(2));
-        }
-    }
-
-    fn solved(&mut self) {
-        self.wait("the end of the solve", |s| s.snapshot.phase == Phase::Done && !s.awaits());
-        self.app.update();
-    }
-
     /// Solved for an importance that reaches from ×1 or less to this, about: what the solver has not been told yet does not
     /// count.
     fn solved_for(&mut self, largest: std::ops::Range<f32>) {
@@ -101,39 +46,6 @@ impl Stage {
         self.app.update();
     }
 
-    fn calm(&mut self) {
-        self.wait("the end of the tasks", |s| s.busy().is_none() && s.wishes.is_empty());
-        self.app.update();
-    }
-
-    fn drag(&mut self, button: MouseButton, from: [f32; 2], to: [f32; 2]) {
-        let window = self.window;
-        let write = |app: &mut App, at: [f32; 2], state: Option<ButtonState>| {
-            app.world_mut().write_message(CursorMoved { window, position: at.into(), delta: None });
-            app.update();
-            if let Some(state) = state {
-                app.world_mut().write_message(MouseButtonInput { button, state, window });
-                app.update();
-            }
-        };
-        write(&mut self.app, from, Some(ButtonState::Pressed));
-        for k in 1..=6 {
-            let t = k as f32 / 6.0;
-            write(&mut self.app, [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis])), None);
-        }
-        write(&mut self.app, to, Some(ButtonState::Released));
-    }
-
-    fn key(&mut self, character: &str) {
-        for state in [ButtonState::Pressed, ButtonState::Released] {
-            let (window, logical_key) = (self.window, Key::Character(character.into()));
-            let key_code = KeyCode::F24;
-            let message = KeyboardInput { key_code, logical_key, state, text: None, repeat: false, window };
-            self.app.world_mut().write_message(message);
-            self.app.update();
-        }
-    }
-
     fn drop_file(&mut self, path: &Path) {
         let message = FileDragAndDrop::DroppedFile { window: self.window, path_buf: path.into() };
         self.app.world_mut().write_message(message);
@@ -141,16 +53,8 @@ impl Stage {
         self.app.update();
     }
 
-    fn orbit(&mut self) -> Orbit {
-        *self.app.world_mut().query::<&Orbit>().single(self.app.world()).unwrap()
-    }
-
     fn looks(&mut self) -> Looks {
         self.app.world_mut().query_filtered::<&Looks, With<Shown>>().single(self.app.world()).unwrap().clone()
-    }
-
-    fn bits(&mut self) -> Vec<u64> {
-        self.sandbox().open.as_ref().unwrap().painting.ln().iter().map(|ln| ln.to_bits()).collect()
     }
 
     fn paint(&mut self) {
