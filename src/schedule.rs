@@ -368,7 +368,8 @@ impl Run {
     /// What a stage refuses.
     pub fn step(&mut self) -> Result<bool> {
         let world = self.app.world_mut();
-        world.run_schedule(Solve);
+        // Within rayon's pool: from outside, each of the many small loops would wait for another thread to wake.
+        rayon::scope(|_| world.run_schedule(Solve));
         match world.resource_mut::<Failure>().0.take() {
             Some(error) => Err(error),
             None => Ok(world.get::<Growing>(self.entity).is_some_and(|g| g.0.done())),
@@ -458,7 +459,8 @@ impl Run {
     /// # Errors
     /// A fault, if it is not done.
     pub fn outcome(&mut self) -> Result<Outcome> {
-        outcome(self.app.world_mut(), self.entity)
+        let (world, entity) = (self.app.world_mut(), self.entity);
+        rayon::scope(|_| outcome(world, entity))
             .ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
     }
 
