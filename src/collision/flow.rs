@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use super::Asked;
 use crate::{
-    edge::{CHUNK, Multigrid, conjugate_gradients},
+    edge::{CHUNK, Multigrid, Weights, conjugate_gradients},
     voxel::{Complex, Dimension, KUHN_FLAT},
 };
 
@@ -39,60 +39,73 @@ const ELEMENTS: [[usize; 3]; 2] = {
     [[a, b, c], [d, e, f]]
 };
 
-/// Where a flow would take the nodes of a flat complex: every cell nearer to the area asked for.
-pub fn flow_step(complex: &Complex, asked: &Asked, positions: &[Vec3A]) -> Vec<Vec3A> {
-    debug_assert_eq!(complex.dimension, Dimension::Two);
-    let cells: Vec<Cell> = complex
-        .corners
-        .par_iter()
-        .zip(&asked.size)
-        .with_min_len(CHUNK / 4)
-        .map(|(corners, &size)| Cell::of(std::array::from_fn(|k| positions[corners[k] as usize].truncate()), size))
-        .collect();
-    let rim = complex.on_boundary.iter().map(|&rim| if rim { RIM } else { 0.0 }).collect();
-    let operator = Multigrid::of_edges(complex, rim, |cell, corner, direction| cells[cell].weight(corner, direction));
-    let around = |i: usize| {
-        complex.cells_around[i]
-            .iter()
-            .take(4)
-            .enumerate()
-            .filter(|(_, cell)| **cell != u32::MAX)
-            .map(|(corner, &cell)| (corner, &cells[cell as usize]))
-    };
-    let mut source: Vec<Vec3A> = (0..complex.nodes())
-        .into_par_iter()
-        .with_min_len(CHUNK)
-        .map(|i| Vec3A::X * -around(i).map(|(corner, cell)| cell.source(corner)).sum::<f32>())
-        .collect();
-    let mut potential = vec![Vec3A::ZERO; complex.nodes()];
-    let goal = TOLERANCE * source.iter().map(|s| f64::from(s.x).powi(2)).sum::<f64>().sqrt();
-    conjugate_gradients(&operator, &mut source, &mut potential, goal, STEPS);
-    let slopes: Vec<[Vec2; 2]> = complex
-        .corners
-        .par_iter()
-        .zip(&cells)
-        .with_min_len(CHUNK / 4)
-        .map(|(corners, cell)| cell.slopes(std::array::from_fn(|k| potential[corners[k] as usize].x)))
-        .collect();
-    (0..complex.nodes())
-        .into_par_iter()
-        .with_min_len(CHUNK)
-        .map(|i| {
-            let (mut sum, mut area) = (Vec2::ZERO, 0.0);
-            for (corner, &cell) in complex.cells_around[i].iter().take(4).enumerate() {
-                if cell == u32::MAX {
-                    continue;
-                }
-                for (element, corners) in ELEMENTS.iter().enumerate() {
-                    if corners.contains(&corner) {
-                        sum += cells[cell as usize].areas[element] * slopes[cell as usize][element];
-                        area += cells[cell as usize].areas[element];
+/// What a flow needs of a flat complex from step to step.
+#[derive(Debug, Clone)]
+pub struct Flow {
+    operator: Multigrid,
+}
+
+impl Flow {
+    /// Prepares for a complex.
+    pub fn new(complex: &Complex) -> Self {
+        debug_assert_eq!(complex.dimension, Dimension::Two);
+        let rim = complex.on_boundary.iter().map(|&rim| if rim { RIM } else { 0.0 }).collect();
+        Self { operator: Multigrid::with_mass(complex, Weights::Unit, rim) }
+    }
+
+    /// Where a flow would take the nodes: every cell nearer to the area asked for.
+    pub fn step(&mut self, complex: &Complex, asked: &Asked, positions: &[Vec3A]) -> Vec<Vec3A> {
+        let cells: Vec<Cell> = complex
+            .corners
+            .par_iter()
+            .zip(&asked.size)
+            .with_min_len(CHUNK / 4)
+            .map(|(corners, &size)| Cell::of(std::array::from_fn(|k| positions[corners[k] as usize].truncate()), size))
+            .collect();
+        self.operator.reweigh(complex, |cell, corner, direction| cells[cell].weight(corner, direction));
+        let around = |i: usize| {
+            complex.cells_around[i]
+                .iter()
+                .take(4)
+                .enumerate()
+                .filter(|(_, cell)| **cell != u32::MAX)
+                .map(|(corner, &cell)| (corner, &cells[cell as usize]))
+        };
+        let mut source: Vec<Vec3A> = (0..complex.nodes())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|i| Vec3A::X * -around(i).map(|(corner, cell)| cell.source(corner)).sum::<f32>())
+            .collect();
+        let mut potential = vec![Vec3A::ZERO; complex.nodes()];
+        let goal = TOLERANCE * source.iter().map(|s| f64::from(s.x).powi(2)).sum::<f64>().sqrt();
+        conjugate_gradients(&self.operator, &mut source, &mut potential, goal, STEPS);
+        let slopes: Vec<[Vec2; 2]> = complex
+            .corners
+            .par_iter()
+            .zip(&cells)
+            .with_min_len(CHUNK / 4)
+            .map(|(corners, cell)| cell.slopes(std::array::from_fn(|k| potential[corners[k] as usize].x)))
+            .collect();
+        (0..complex.nodes())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|i| {
+                let (mut sum, mut area) = (Vec2::ZERO, 0.0);
+                for (corner, &cell) in complex.cells_around[i].iter().take(4).enumerate() {
+                    if cell == u32::MAX {
+                        continue;
+                    }
+                    for (element, corners) in ELEMENTS.iter().enumerate() {
+                        if corners.contains(&corner) {
+                            sum += cells[cell as usize].areas[element] * slopes[cell as usize][element];
+                            area += cells[cell as usize].areas[element];
+                        }
                     }
                 }
-            }
-            positions[i] + (sum / area.max(f32::MIN_POSITIVE)).extend(0.0).to_vec3a()
-        })
-        .collect()
+                positions[i] + (sum / area.max(f32::MIN_POSITIVE)).extend(0.0).to_vec3a()
+            })
+            .collect()
+    }
 }
 
 /// A deformed cell.
@@ -172,8 +185,9 @@ mod tests {
             (complex.corners.iter().zip(&asked.size).map(of_cell).sum::<f32>() / 256.0).sqrt()
         };
         let before = lack(&positions);
+        let mut flow = Flow::new(&complex);
         for _ in 0..12 {
-            let next = flow_step(&complex, &asked, &positions);
+            let next = flow.step(&complex, &asked, &positions);
             positions.iter_mut().zip(next).for_each(|(p, next)| *p = p.lerp(next, part));
             for corners in &complex.corners {
                 for element in Dimension::Two.elements() {

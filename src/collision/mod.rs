@@ -8,7 +8,7 @@
 //! # Changes from the paper
 //! Fig. 5 projects edge lengths one by one and diverges as printed (see `reference`). Its ingredients stay: stepwise
 //! scaling by λ, spheres of radius r_i found by spatial hashing. The guard is new: it keeps the promise. So is the
-//! [flow](flow_step) by which each step of λ begins on maps.
+//! [flow](Flow) by which each step of λ begins on maps.
 //!
 //! # Practice
 //! One multigrid cycle is enough for the global step where nothing touches; with contacts, which the cycle does not
@@ -32,7 +32,7 @@ use crate::{
     voxel::{Complex, Dimension},
 };
 pub use contact::Contacts;
-pub use flow::flow_step;
+pub use flow::Flow;
 pub use growth::Growth;
 pub use guard::{Guarded, Watch};
 pub use shell::{Placed, Shell};
@@ -89,7 +89,8 @@ impl Problem {
     pub fn weigh(&mut self, complex: &Complex, asked: &Asked) {
         if complex.dimension == Dimension::Two {
             self.weights = asked.size.iter().map(|s| 1.0 / (s * s)).collect();
-            self.operator = Multigrid::of_cells(complex, &self.weights);
+            let weights = &self.weights;
+            self.operator.reweigh(complex, |cell, _, _| weights[cell]);
         }
     }
 

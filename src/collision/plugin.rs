@@ -5,9 +5,9 @@ use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Growth, Guarded, Placed, Problem, Shell,
+    Asked, Contacts, Flow, Growth, Guarded, Placed, Problem, Shell,
     areas::{AreaCorrection, Corrected},
-    contact, contact_step, flow_step, global_step, grow, guard_step, largest_motion, local_step, near_step,
+    contact, contact_step, global_step, grow, guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
     diagnostics::Stopwatch,
@@ -86,7 +86,7 @@ pub struct HeldBack(pub Guarded);
 /// Marks domains that are led by a flow: maps, whose areas matter more than the shape of a cell. Where single parts of a
 /// picture grow, the teeth of a crocodile, a flow gives them their area and takes their outline.
 #[derive(Component, Debug)]
-pub struct Flowing;
+pub struct Flowing(pub Flow);
 
 /// Adds the stages.
 pub struct CollisionPlugin;
@@ -118,7 +118,8 @@ fn start(
             let correction = watch.time("grow", || AreaCorrection::new(picture, &domain.boundary));
             commands.entity(entity).insert(correction);
             if picture.is_map() {
-                commands.entity(entity).insert(Flowing);
+                let flow = watch.time("grow", || Flow::new(complex));
+                commands.entity(entity).insert(Flowing(flow));
             }
         }
         let problem = watch.time("grow", || {
@@ -198,16 +199,18 @@ fn grow_sizes(
     }
 }
 
-type Led<'a> = (&'a Lattice, &'a Sizes, &'a BoundaryAtRisk, &'a Growing, &'a mut Shells, &'a mut Warped);
+type Led<'a> =
+    (&'a Lattice, &'a mut Flowing, &'a Sizes, &'a BoundaryAtRisk, &'a Growing, &'a mut Shells, &'a mut Warped);
 
 /// Maps begin each step of λ by a flow.
-fn flow(mut domains: Query<Led, With<Flowing>>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), Sizes(asked), at_risk, Growing(growth), mut shells, mut warped) in &mut domains {
+fn flow(mut domains: Query<Led>, mut watch: ResMut<Stopwatch>) {
+    for (Lattice(complex), mut flowing, Sizes(asked), at_risk, Growing(growth), mut shells, mut warped) in &mut domains
+    {
         if growth.done() || !growth.flows() {
             continue;
         }
         let guarded = if at_risk.0 { shells.0.len() } else { 1 };
-        let proposed = watch.time("grow", || flow_step(complex, asked, &warped.0));
+        let proposed = watch.time("grow", || flowing.0.step(complex, asked, &warped.0));
         watch.time("guard", || {
             guard_step(complex, asked, &mut shells.0[..guarded], &mut warped.0, proposed, &mut Vec::new())
         });

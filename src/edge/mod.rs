@@ -10,6 +10,7 @@
 //! The paper sweeps Jacobi 20 times; that is kept in `reference`. Here: conjugate gradients
 //! preconditioned by one multigrid cycle, from the last solution.
 
+mod level;
 mod multigrid;
 pub mod plugin;
 mod solve;

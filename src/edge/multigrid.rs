@@ -6,15 +6,17 @@
 //! piecewise linear functions. The coarse operator `Pᵀ A P` (Galerkin) has the same fifteen-point pattern, because both
 //! ends of a fine edge lie in one coarse tetrahedron.
 //!
+//! In the plane rows have six entries, and every fine edge lies on one coarse edge or beside one: see [`Level::reweigh`].
+//!
 //! # Practice
 //! Smoother: two damped Jacobi sweeps with Chebyshev weights, the same before and (reversed) after, so that the cycle is
 //! symmetric. Every loop gathers, none scatters: the result has the same bits for any number of threads.
 
-use glam::{IVec3, Vec3A};
+use glam::Vec3A;
 use rayon::prelude::*;
 
-use super::CHUNK;
-use crate::voxel::{Complex, DIRECTIONS, NEIGHBOURS, opposite};
+use super::{CHUNK, level::Level};
+use crate::voxel::{Complex, Dimension};
 
 /// Which Laplacian of C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,25 +30,7 @@ pub enum Weights {
 /// The hierarchy.
 #[derive(Debug, Clone)]
 pub struct Multigrid {
-    pub(super) levels: Vec<Level>,
-}
-
-/// One lattice: a symmetric matrix with fifteen-point rows.
-#[derive(Debug, Clone)]
-pub(super) struct Level {
-    /// `[rows]` columns of the off-diagonal entries.
-    pub neighbours: Vec<[u32; NEIGHBOURS]>,
-    /// `[rows]` off-diagonal entries (negative for a Laplacian).
-    pub off_diagonal: Vec<[f32; NEIGHBOURS]>,
-    /// `[rows]` diagonal entries, > 0, mass included.
-    pub diagonal: Vec<f32>,
-    /// `[rows]` what the row sums to: zero for a Laplacian, then empty.
-    mass: Vec<f32>,
-    /// `[rows]` the two coarse nodes a node is the middle of (the same twice where it is one).
-    parents: Vec<[u32; 2]>,
-    /// `[coarse rows]` fine nodes that a coarse node is a parent of, in compressed rows.
-    children_start: Vec<u32>,
-    children: Vec<u32>,
+    levels: Vec<Level>,
 }
 
 /// Levels stop at this many nodes; the coarsest is then smoothed until it is solved well enough.
@@ -58,33 +42,6 @@ const COARSEST_SWEEPS: usize = 24;
 /// Chebyshev weights of two Jacobi sweeps for eigenvalues of D⁻¹A in [0.5, 2]: 2 is Gershgorin's bound, and what lies
 /// below a quarter of it is the coarse level's work.
 const SWEEPS: [f32; 2] = [0.561_694, 1.389_526];
-
-impl Level {
-    /// `y = A x`.
-    pub fn apply(&self, x: &[Vec3A], y: &mut Vec<Vec3A>) {
-        (0..x.len()).into_par_iter().with_min_len(CHUNK).map(|i| self.row(x, i)).collect_into_vec(y);
-    }
-
-    #[inline]
-    fn row(&self, x: &[Vec3A], i: usize) -> Vec3A {
-        // In differences: what rounding leaves of a Laplacian then still sums to zero over all rows.
-        let own = x[i];
-        let mut sum = if self.mass.is_empty() { Vec3A::ZERO } else { self.mass[i] * own };
-        for (&j, &a) in self.neighbours[i].iter().zip(&self.off_diagonal[i]) {
-            sum += a * (x[j as usize] - own);
-        }
-        sum
-    }
-
-    /// `out = x + ω D⁻¹ (b − A x)`.
-    fn sweep(&self, weight: f32, b: &[Vec3A], x: &[Vec3A], out: &mut Vec<Vec3A>) {
-        (0..x.len())
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .map(|i| x[i] + (weight / self.diagonal[i]) * (b[i] - self.row(x, i)))
-            .collect_into_vec(out);
-    }
-}
 
 /// Vectors of one level, kept between cycles.
 #[derive(Debug, Clone, Default)]
@@ -108,72 +65,35 @@ impl Multigrid {
 
     /// Builds all levels of Laplacian + diagonal; `mass` is `[nodes]`, ≥ 0, or empty for none.
     pub fn with_mass(complex: &Complex, weights: Weights, mass: Vec<f32>) -> Self {
-        let mut off_diagonal = vec![[0.0_f32; NEIGHBOURS]; complex.nodes()];
-        let mut diagonal = vec![0.0_f32; complex.nodes()];
-        for i in 0..complex.nodes() {
-            for (entry, &m) in off_diagonal[i].iter_mut().zip(&complex.multiplicity[i]) {
-                let w = if weights == Weights::Unit { f32::from(m.min(1)) } else { f32::from(m) };
-                *entry = -w;
-                diagonal[i] += w;
-            }
-            diagonal[i] += mass.get(i).copied().unwrap_or(0.0);
-        }
-        Self::of_finest(complex, off_diagonal, diagonal, mass)
-    }
-
-    /// Builds all levels of the Laplacian in which every edge weighs the sum of `[cells]` weights > 0 around it.
-    pub fn of_cells(complex: &Complex, weights: &[f32]) -> Self {
-        Self::of_edges(complex, Vec::new(), |cell, _, _| weights[cell])
-    }
-
-    /// Builds all levels of Laplacian + diagonal. Every edge weighs the sum of what the cells around it give: `weight` is
-    /// asked for the cell, the corner where the edge begins, and its direction as corner bits. `mass` as in
-    /// [`with_mass`](Self::with_mass).
-    pub fn of_edges(complex: &Complex, mass: Vec<f32>, weight: impl Fn(usize, usize, usize) -> f32) -> Self {
-        let mut off_diagonal = vec![[0.0_f32; NEIGHBOURS]; complex.nodes()];
-        let mut diagonal = vec![0.0_f32; complex.nodes()];
-        let count = complex.dimension.corners();
-        for (cell, corners) in complex.corners.iter().enumerate() {
-            for corner in 0..count {
-                for direction in (1..count).filter(|direction| corner & direction == 0) {
-                    let [i, j] = [corner, corner | direction].map(|k| corners[k] as usize);
-                    let weight = weight(cell, corner, direction);
-                    for (node, slot) in [(i, direction - 1), (j, direction + 6)] {
-                        off_diagonal[node][slot] -= weight;
-                        diagonal[node] += weight;
-                    }
-                }
-            }
-        }
-        for (diagonal, mass) in diagonal.iter_mut().zip(&mass) {
-            *diagonal += mass;
-        }
-        Self::of_finest(complex, off_diagonal, diagonal, mass)
-    }
-
-    fn of_finest(complex: &Complex, off_diagonal: Vec<[f32; NEIGHBOURS]>, diagonal: Vec<f32>, mass: Vec<f32>) -> Self {
-        let mut levels = vec![Level {
-            neighbours: complex.neighbours.clone(),
-            off_diagonal,
-            diagonal,
-            mass,
-            parents: Vec::new(),
-            children_start: Vec::new(),
-            children: Vec::new(),
-        }];
-        let mut positions: Vec<IVec3> = complex.rest.iter().map(|p| p.as_ivec3()).collect();
-        while levels.last().is_some_and(|l| l.diagonal.len() > COARSEST) {
-            let Some(fine) = levels.last_mut() else { break };
-            let (coarse, coarse_positions) = coarsen(fine, &positions);
-            if coarse.diagonal.len() * 10 > fine.diagonal.len() * 9 {
-                // Scattered single cells do not coarsen; smoothing alone serves them.
-                fine.parents.clear();
-                break;
-            }
+        let (finest, mut positions) = Level::finest(complex, weights, mass);
+        let mut levels = vec![finest];
+        while let Some(fine) = levels.last_mut().filter(|l| l.diagonal.len() > COARSEST) {
+            let Some((coarse, coarse_positions)) = fine.coarsen(&positions) else { break };
             levels.push(coarse);
             positions = coarse_positions;
         }
         Self { levels }
+    }
+
+    /// Gives every edge of a flat lattice the sum of what the cells around it give, the diagonal stays: `weight` is asked
+    /// for the cell, the corner where the edge begins, and its direction as corner bits.
+    pub fn reweigh(&mut self, complex: &Complex, weight: impl Fn(usize, usize, usize) -> f32 + Sync) {
+        debug_assert_eq!(complex.dimension, Dimension::Two);
+        let forward = |i: usize| {
+            std::array::from_fn(|slot| {
+                let around = complex.cells_around[i].iter().take(4).enumerate();
+                let beside = around.filter(|(corner, cell)| corner & (slot + 1) == 0 && **cell != u32::MAX);
+                beside.map(|(corner, &cell)| weight(cell as usize, corner, slot + 1)).sum()
+            })
+        };
+        let mut forward: Vec<[f32; 3]> =
+            (0..complex.nodes()).into_par_iter().with_min_len(CHUNK).map(forward).collect();
+        for k in 0..self.levels.len() {
+            self.levels[k].reweigh(&forward);
+            if let [fine, coarse, ..] = &self.levels[k..] {
+                forward = fine.lift(&forward, coarse);
+            }
+        }
     }
 
     /// The operator itself: `y = A x`.
@@ -217,12 +137,7 @@ impl Multigrid {
         level.sweep(SWEEPS[1], b, &work.x, &mut work.spare);
         std::mem::swap(&mut work.x, &mut work.spare);
 
-        let x = &work.x;
-        (0..b.len())
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .map(|i| b[i] - level.row(x, i))
-            .collect_into_vec(&mut work.spare);
+        level.map_rows(&work.x, &mut work.spare, |i, ax| b[i] - ax);
         let residual = &work.spare;
         (0..level.children_start.len() - 1)
             .into_par_iter()
@@ -249,139 +164,77 @@ impl Multigrid {
     }
 }
 
-/// Builds the next lattice and links `fine` to it.
-fn coarsen(fine: &mut Level, positions: &[IVec3]) -> (Level, Vec<IVec3>) {
-    let halves = |p: IVec3| {
-        let parity = p & 1;
-        [(p - parity) / 2, (p + parity) / 2]
-    };
-    let size = positions.iter().fold(IVec3::ZERO, |m, &p| m.max(halves(p)[1])) + 1;
-    let key = |p: IVec3| ((p.z as usize) * size.y as usize + p.y as usize) * size.x as usize + p.x as usize;
-    // Only corners that are parents become unknowns: others would have empty rows.
-    let mut index = vec![u32::MAX; size.x as usize * size.y as usize * size.z as usize];
-    for p in positions.iter().flat_map(|&p| halves(p)) {
-        index[key(p)] = 0;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::voxel::Grid;
+    use glam::{DVec3, UVec3};
+
+    /// A block with a hole.
+    fn complex(dimension: Dimension) -> Complex {
+        let cells = match dimension {
+            Dimension::Two => UVec3::new(31, 22, 1),
+            Dimension::Three => UVec3::new(9, 8, 7),
+        };
+        let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells };
+        let inside: Vec<bool> = (0..cells.element_product()).map(|k| k % 37 != 5).collect();
+        match dimension {
+            Dimension::Two => Complex::from_flat_cells(grid, &inside),
+            Dimension::Three => Complex::from_cells(grid, &inside),
+        }
     }
-    let mut coarse_positions = Vec::new();
-    for z in 0..size.z {
-        for y in 0..size.y {
-            for x in 0..size.x {
-                let slot = &mut index[key(IVec3::new(x, y, z))];
-                if *slot == 0 {
-                    *slot = coarse_positions.len() as u32;
-                    coarse_positions.push(IVec3::new(x, y, z));
-                }
+
+    fn values(count: usize) -> Vec<Vec3A> {
+        let value = |k: usize| (k as u32).wrapping_mul(2_654_435_761) as f32 / u32::MAX as f32;
+        (0..count).map(|k| Vec3A::new(value(3 * k), value(3 * k + 1), value(3 * k + 2))).collect()
+    }
+
+    /// `xᵀ A x` of what is linear on the coarse lattice, with the coarse matrix and with the fine one.
+    fn energies(multigrid: &Multigrid, depth: usize) -> [f64; 2] {
+        let (fine, coarse) = (&multigrid.levels[depth], &multigrid.levels[depth + 1]);
+        let x = values(coarse.diagonal.len());
+        let between = |&[p, q]: &[u32; 2]| 0.5 * (x[p as usize] + x[q as usize]);
+        let lifted: Vec<Vec3A> = fine.parents.iter().map(between).collect();
+        let energy = |level: &Level, x: &[Vec3A]| {
+            let mut ax = Vec::new();
+            level.apply(x, &mut ax);
+            x.iter().zip(&ax).map(|(x, ax)| f64::from(x.dot(*ax))).sum()
+        };
+        [energy(coarse, &x), energy(fine, &lifted)]
+    }
+
+    /// The hierarchy of a flat lattice whose cells weigh differently.
+    fn reweighed() -> Multigrid {
+        let complex = complex(Dimension::Two);
+        let mut multigrid = Multigrid::new(&complex, Weights::Unit);
+        let weight = values(complex.cells.len());
+        multigrid.reweigh(&complex, |cell, corner, direction| weight[cell].x + 0.1 * (corner + direction) as f32);
+        multigrid
+    }
+
+    #[test]
+    fn coarse_matrices_are_what_is_left_of_the_fine_ones() {
+        let flat = Multigrid::new(&complex(Dimension::Two), Weights::Cells);
+        let body = Multigrid::new(&complex(Dimension::Three), Weights::Cells);
+        for multigrid in [flat, body, reweighed()] {
+            assert!(multigrid.levels.len() > 1);
+            for depth in 0..multigrid.levels.len() - 1 {
+                let [coarse, fine] = energies(&multigrid, depth);
+                assert!((coarse - fine).abs() < 1e-4 * fine, "{depth}: {coarse} {fine}");
             }
         }
     }
-    fine.parents = positions.par_iter().map(|&p| halves(p).map(|half| index[key(half)])).collect();
 
-    let n = coarse_positions.len();
-    let mut counts = vec![0_u32; n + 1];
-    for &[p, q] in &fine.parents {
-        counts[p as usize + 1] += 1;
-        if q != p {
-            counts[q as usize + 1] += 1;
-        }
+    #[test]
+    fn sabotage_of_the_weights_shows() {
+        let mut multigrid = reweighed();
+        let (first, rest) = multigrid.levels.split_at_mut(1);
+        let uneven: Vec<[f32; 3]> = values(first[0].diagonal.len()).iter().map(|v| v.to_array()).collect();
+        let mut lifted = first[0].lift(&uneven, &rest[0]);
+        lifted.iter_mut().for_each(|forward| forward.swap(0, 2));
+        rest[0].reweigh(&lifted);
+        first[0].reweigh(&uneven);
+        let [coarse, fine] = energies(&multigrid, 0);
+        assert!((coarse - fine).abs() > 1e-3 * fine, "{coarse} {fine}");
     }
-    for i in 0..n {
-        counts[i + 1] += counts[i];
-    }
-    let mut cursor = counts.clone();
-    let mut children = vec![0_u32; counts[n] as usize];
-    for (i, &[p, q]) in fine.parents.iter().enumerate() {
-        for parent in std::iter::once(p).chain((q != p).then_some(q)) {
-            children[cursor[parent as usize] as usize] = i as u32;
-            cursor[parent as usize] += 1;
-        }
-    }
-    fine.children_start = counts;
-    fine.children = children;
-
-    let mut coarse = Level {
-        neighbours: (0..n as u32).map(|i| [i; NEIGHBOURS]).collect(),
-        off_diagonal: vec![[0.0; NEIGHBOURS]; n],
-        diagonal: vec![0.0; n],
-        mass: Vec::new(),
-        parents: Vec::new(),
-        children_start: Vec::new(),
-        children: Vec::new(),
-    };
-    galerkin(fine, &coarse_positions, &mut coarse);
-    (coarse, coarse_positions)
-}
-
-/// `Pᵀ A P`, row by row from the children of each coarse node.
-fn galerkin(fine: &Level, coarse_positions: &[IVec3], coarse: &mut Level) {
-    let rows: Vec<([u32; NEIGHBOURS], [f32; NEIGHBOURS], f32)> = (0..coarse_positions.len())
-        .into_par_iter()
-        .with_min_len(CHUNK / 8)
-        .map(|row| {
-            let mut columns = [row as u32; NEIGHBOURS];
-            let mut entries = [0.0_f32; NEIGHBOURS];
-            let mut diagonal = 0.0_f32;
-            let mut add = |column: u32, value: f32| {
-                if column as usize == row {
-                    diagonal += value;
-                    return;
-                }
-                let slot = slot_of(coarse_positions[column as usize] - coarse_positions[row]);
-                columns[slot] = column;
-                entries[slot] += value;
-            };
-            for &child in &fine.children[fine.children_start[row] as usize..fine.children_start[row + 1] as usize] {
-                let child = child as usize;
-                let left = weight_of(fine, child as u32, row);
-                let mut spread = |node: usize, value: f32| {
-                    let [p, q] = fine.parents[node];
-                    if p == q {
-                        add(p, left * value);
-                    } else {
-                        add(p, 0.5 * left * value);
-                        add(q, 0.5 * left * value);
-                    }
-                };
-                // Without the mass, which is lumped below.
-                spread(child, fine.diagonal[child] - fine.mass.get(child).copied().unwrap_or(0.0));
-                for slot in 0..NEIGHBOURS {
-                    let value = fine.off_diagonal[child][slot];
-                    if value != 0.0 {
-                        spread(fine.neighbours[child][slot] as usize, value);
-                    }
-                }
-            }
-            (columns, entries, diagonal)
-        })
-        .collect();
-    for (row, (columns, entries, diagonal)) in rows.into_iter().enumerate() {
-        coarse.neighbours[row] = columns;
-        coarse.off_diagonal[row] = entries;
-        coarse.diagonal[row] = diagonal.max(f32::MIN_POSITIVE);
-    }
-    if !fine.mass.is_empty() {
-        // Lumped: the row sums of Pᵀ M P, since P keeps constants.
-        coarse.mass = (0..coarse.diagonal.len())
-            .map(|row| {
-                let children = &fine.children[fine.children_start[row] as usize..fine.children_start[row + 1] as usize];
-                children.iter().map(|&c| weight_of(fine, c, row) * fine.mass[c as usize]).sum()
-            })
-            .collect();
-        for (diagonal, mass) in coarse.diagonal.iter_mut().zip(&coarse.mass) {
-            *diagonal += mass;
-        }
-    }
-}
-
-/// The entry of P for a child and one of its parents.
-fn weight_of(fine: &Level, child: u32, parent: usize) -> f32 {
-    if fine.parents[child as usize] == [parent as u32; 2] { 1.0 } else { 0.5 }
-}
-
-/// The neighbour slot of a lattice offset, which is a Kuhn direction or the opposite of one.
-fn slot_of(offset: IVec3) -> usize {
-    let forward = offset.max_element() > 0;
-    let d = offset.abs();
-    let slot = (d.x | d.y << 1 | d.z << 2) as usize - 1;
-    debug_assert_eq!(if forward { DIRECTIONS[slot] } else { -DIRECTIONS[slot] }, offset);
-    if forward { slot } else { opposite(slot) }
 }
