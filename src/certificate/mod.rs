@@ -9,7 +9,8 @@
 //! Exact signs (crate `robust`) behind an interval filter; boxes in a tree that is refitted. Touching counts as crossing.
 //! Most is proven at once and without exact signs: whole cells by how little they differ from a linear map, the
 //! triangles around a vertex by being seen side by side, and both also for all blends of two states. The one way to make
-//! a [`Certificate`] is to check the state, by [`certify`] or together with the way to it by [`certify_way`].
+//! a [`Certificate`] is to check the state, by [`certify`], [`certify_rest`] or together with the way to it by
+//! [`certify_way`].
 
 mod elements;
 mod fidelity;
@@ -36,7 +37,7 @@ use crate::{
     voxel::{Complex, Dimension},
 };
 
-/// What the check of one state found. Only [`certify`] and [`certify_way`] make one.
+/// What the check of one state found. Only [`certify`], [`certify_rest`] and [`certify_way`] make one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     inverted: usize,
@@ -91,6 +92,16 @@ pub fn certify(complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Cert
         || shells.par_iter().map(|s| s.crossings(positions)).collect(),
     );
     conclude(complex, shells, positions, elements, &crossings)
+}
+
+/// Checks the rest state like [`certify`]. What of a surface in space crosses at rest was found when the shell was made,
+/// and is inherited.
+pub fn certify_rest(complex: &Complex, shells: &[Shell]) -> Certificate {
+    let (elements, crossings): (_, Vec<_>) = rayon::join(
+        || elements::check(complex, &complex.rest),
+        || shells.par_iter().map(|s| s.crossings_at_rest(&complex.rest)).collect(),
+    );
+    conclude(complex, shells, &complex.rest, elements, &crossings)
 }
 
 /// Parts of a motion that are looked at where no proof comes out, the end left out.
@@ -151,63 +162,66 @@ fn conclude(
 /// Solids that lie inside another one: one point of each is looked at, which tells for all of it as long as no skins
 /// cross. Parts that hang together by nodes or edges alone are solids of their own.
 ///
-/// The winding number of a closed skin around a point off it is a whole number; summed as (solid) angles (van Oosterom and
+/// The winding number of a closed skin around a point off it is a whole number; summed as solid angles (van Oosterom and
 /// Strackee 1983) it comes out within far less than the half that would be needed to mistake it.
 pub(crate) fn enclosed_solids(complex: &Complex, positions: &[Vec3A]) -> Vec<u32> {
     if complex.solids < 2 {
         return Vec::new();
     }
     let solids = complex.solids as usize;
+    let solid_of_face = |face: usize| complex.solid[complex.cell_of_face[face] as usize];
     let mut bounds = vec![Bounds::EMPTY; solids];
     let mut witness = vec![None; solids];
-    for (corners, &solid) in complex.corners.iter().zip(&complex.solid) {
-        let at = corners.map(|c| positions[c as usize]);
-        let b = &mut bounds[solid as usize];
-        *b = at.iter().fold(*b, |b, &p| Bounds { low: b.low.min(p), high: b.high.max(p) });
+    for (k, face) in complex.faces.iter().enumerate() {
+        let solid = solid_of_face(k) as usize;
+        let at = face.map(|v| positions[v as usize]);
+        bounds[solid] = at.iter().fold(bounds[solid], |b, &p| Bounds { low: b.low.min(p), high: b.high.max(p) });
         // The middle of an element: inside, and on no skin.
-        let element = complex.dimension.elements()[0].map(|c| at[c].as_dvec3());
-        let middle = match complex.dimension {
-            Dimension::Two => (element[0] + element[1] + element[2]) / 3.0,
-            Dimension::Three => element.iter().sum::<DVec3>() / 4.0,
-        };
-        witness[solid as usize].get_or_insert(middle);
+        witness[solid].get_or_insert_with(|| {
+            let corners = complex.corners[complex.cell_of_face[k] as usize];
+            let at = complex.dimension.elements()[0].map(|c| positions[corners[c] as usize].as_dvec3());
+            match complex.dimension {
+                Dimension::Two => (at[0] + at[1] + at[2]) / 3.0,
+                Dimension::Three => at.iter().sum::<DVec3>() / 4.0,
+            }
+        });
     }
-    let mut faces: Vec<Vec<[u32; 3]>> = vec![Vec::new(); solids];
-    for (&face, &cell) in complex.faces.iter().zip(&complex.cell_of_face) {
-        faces[complex.solid[cell as usize] as usize].push(face);
-    }
+    let is_inside = |p: DVec3, solid: usize| {
+        let faces = complex.faces.iter().enumerate().filter(|&(k, _)| solid_of_face(k) as usize == solid);
+        winding(complex.dimension, faces.map(|(_, face)| face), positions, p).abs() > 0.5
+    };
     (0..solids)
         .into_par_iter()
         .filter(|&a| {
             let Some(p) = witness[a] else { return false };
             let at = Bounds { low: p.as_vec3a(), high: p.as_vec3a() };
-            (0..solids).any(|b| {
-                a != b && bounds[b].meets(&at) && winding(complex.dimension, &faces[b], positions, p).abs() > 0.5
-            })
+            (0..solids).any(|b| a != b && bounds[b].meets(&at) && is_inside(p, b))
         })
         .map(|a| a as u32)
         .collect()
 }
 
-/// Winding number of a closed surface, in the plane of closed lines, around a point.
-fn winding(dimension: Dimension, faces: &[[u32; 3]], positions: &[Vec3A], p: DVec3) -> f64 {
-    let corners = |face: &[u32; 3]| face.map(|v| positions[v as usize].as_dvec3() - p);
+/// Winding number of a closed surface, in the plane of closed lines, around a point off it.
+fn winding<'a>(dimension: Dimension, faces: impl Iterator<Item = &'a [u32; 3]>, positions: &[Vec3A], p: DVec3) -> f64 {
+    let corners = |face: &[u32; 3]| face.map(|v| positions[v as usize].as_dvec3());
     match dimension {
+        // Lines that cross the ray to the right, by the way they go; exact.
         Dimension::Two => {
-            let angle: f64 = faces
-                .iter()
-                .map(|face| {
-                    let [a, b, _] = corners(face).map(DVec3::truncate);
-                    a.perp_dot(b).atan2(a.dot(b))
-                })
-                .sum();
-            angle / std::f64::consts::TAU
+            let crossing = |face: &[u32; 3]| {
+                let [a, b, _] = corners(face);
+                let upward = b.y > p.y;
+                if (a.y > p.y) == upward {
+                    return 0.0;
+                }
+                let (low, high, sign) = if upward { (a, b, 1.0) } else { (b, a, -1.0) };
+                if is_positive(Dimension::Two, [low, high, p, p]) { sign } else { 0.0 }
+            };
+            faces.map(crossing).sum()
         }
         Dimension::Three => {
             let angle: f64 = faces
-                .iter()
                 .map(|face| {
-                    let [a, b, c] = corners(face);
+                    let [a, b, c] = corners(face).map(|corner| corner - p);
                     let (la, lb, lc) = (a.length(), b.length(), c.length());
                     let volume = a.dot(b.cross(c));
                     2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)

@@ -86,7 +86,8 @@ pub fn guard(
     for hold in holds.iter_mut() {
         *hold = hold.saturating_sub(1);
     }
-    let step = Step { complex, shells, near: &near, size, current, watch };
+    let rim = (0..complex.nodes()).filter(|&i| complex.on_boundary[i]).collect();
+    let step = Step { complex, shells, near: &near, size, current, watch, rim };
     for whole in WHOLE_STEPS {
         let target =
             if whole < 1.0 { Cow::Owned(blend(current, &full, whole)) } else { Cow::Borrowed(full.as_slice()) };
@@ -108,6 +109,8 @@ struct Step<'a> {
     size: &'a [f32],
     current: &'a [Vec3A],
     watch: Watch,
+    /// Nodes on the boundary.
+    rim: Vec<usize>,
 }
 
 impl Step<'_> {
@@ -164,9 +167,19 @@ impl Step<'_> {
         // In the plane steps are longer.
         let is_flat = self.complex.dimension == Dimension::Two;
         let parts = if is_flat && self.watch == Watch::Way { Watch::Surfaces.parts() } else { self.watch.parts() };
+        // Where only the skin is looked at on the way, only its nodes are moved there.
+        let mut skin = (self.watch == Watch::Surfaces && self.shells.len() == 1).then(|| proposed.to_vec());
         for &part in parts {
-            let state: Cow<'_, [Vec3A]> =
-                if part < 1.0 { Cow::Owned(blend(self.current, proposed, part)) } else { Cow::Borrowed(proposed) };
+            let state: Cow<'_, [Vec3A]> = match &mut skin {
+                _ if part == 1.0 => Cow::Borrowed(proposed),
+                Some(skin) => {
+                    for &i in &self.rim {
+                        skin[i] = self.current[i] + part * (proposed[i] - self.current[i]);
+                    }
+                    Cow::Borrowed(skin)
+                }
+                None => Cow::Owned(blend(self.current, proposed, part)),
+            };
             if part == 1.0 || self.watch == Watch::Way {
                 marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
                 marked.extend(self.enclosed(&state));

@@ -13,6 +13,7 @@ use crate::{
 pub fn flat_boundary(name: &str, complex: &Complex, size: glam::UVec2) -> Boundary {
     let refinement = Refinement::new(complex);
     let positions: Vec<DVec3> = refinement
+        .all()
         .apply(&complex.rest)
         .into_iter()
         .map(|p: Vec3A| complex.grid.source_from_lattice(p.as_dvec3()))

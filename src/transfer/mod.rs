@@ -10,7 +10,7 @@ pub mod plugin;
 mod refine;
 
 pub use flat::flat_boundary;
-pub use refine::Refinement;
+pub use refine::{Refined, Refinement};
 
 use glam::{DVec3, IVec3, Vec3A};
 use rayon::prelude::*;
@@ -23,14 +23,14 @@ use crate::{
 /// Barycentric coordinates of every boundary vertex in its element, computed once.
 #[derive(Debug, Clone)]
 pub struct Binding {
-    /// `[vertices]` the four nodes of its element in the halved lattice.
+    /// `[vertices]` the four nodes of its element in the halved lattice, of which those that carry a vertex are kept.
     pub nodes: Vec<[u32; 4]>,
     /// `[vertices]` α β γ δ, each in 0..=1, summing to 1; all zero for a vertex outside the complex (one that no triangle
     /// uses), which stays where it is.
     pub weights: Vec<[f32; 4]>,
     /// B in source units.
     rest: Vec<DVec3>,
-    refinement: Refinement,
+    refined: Refined,
     /// V, refined.
     rest_nodes: Vec<Vec3A>,
     grid: Grid,
@@ -127,7 +127,8 @@ impl Binding {
                 cells.locate(p).map_or(([0; 4], [0.0; 4]), |cell| bind(cell, p))
             })
             .collect();
-        let (nodes, weights) = bound.into_iter().unzip();
+        let (mut nodes, weights): (Vec<[u32; 4]>, Vec<_>) = bound.into_iter().unzip();
+        let refined = refinement.reduced(&mut nodes);
         let grid = complex.grid;
         let extent = grid.cells.as_dvec3() * grid.cell_size;
         let far = (grid.origin.abs() + extent).max_element() > FAR_FROM_ORIGIN * extent.max_element();
@@ -136,8 +137,8 @@ impl Binding {
             nodes,
             weights,
             rest: boundary.positions.clone(),
-            rest_nodes: refinement.apply(&complex.rest),
-            refinement,
+            rest_nodes: refined.apply(&complex.rest),
+            refined,
             grid,
             single: !far && representable,
         }
@@ -158,15 +159,16 @@ impl Binding {
 
     /// B' of a state, in source units, rounded as it will be written.
     pub fn apply(&self, nodes: &[Vec3A]) -> Vec<DVec3> {
-        (0..self.nodes.len()).into_par_iter().with_min_len(VERTICES_PER_TASK).map(|v| self.vertex(v, nodes)).collect()
+        let refined = self.refined.apply(nodes);
+        let vertices = (0..self.nodes.len()).into_par_iter().with_min_len(VERTICES_PER_TASK);
+        vertices.map(|v| self.vertex(v, &refined)).collect()
     }
 
-    fn vertex(&self, v: usize, nodes: &[Vec3A]) -> DVec3 {
+    fn vertex(&self, v: usize, refined: &[Vec3A]) -> DVec3 {
         let mut moved = DVec3::ZERO;
         for (&i, &w) in self.nodes[v].iter().zip(&self.weights[v]) {
-            // Few nodes of the halved lattice carry a vertex: they are made as they are needed.
-            let node = self.refinement.node(i as usize, nodes);
-            moved += f64::from(w) * (node.as_dvec3() - self.rest_nodes[i as usize].as_dvec3());
+            let i = i as usize;
+            moved += f64::from(w) * (refined[i].as_dvec3() - self.rest_nodes[i].as_dvec3());
         }
         if moved == DVec3::ZERO {
             return self.rest[v];
@@ -177,11 +179,12 @@ impl Binding {
 
     /// B' of a state for comparing its triangles: source units where files hold f32, else cells.
     pub fn apply_for_check(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
+        let refined = self.refined.apply(nodes);
         (0..self.nodes.len())
             .into_par_iter()
             .with_min_len(VERTICES_PER_TASK)
             .map(|v| {
-                let p = self.vertex(v, nodes);
+                let p = self.vertex(v, &refined);
                 if self.single { p.as_vec3a() } else { self.grid.lattice_from_source(p).as_vec3a() }
             })
             .collect()
@@ -196,7 +199,7 @@ impl Binding {
     pub(crate) fn bounds_between(&self, a: &[Vec3A], b: &[Vec3A]) -> [Vec<Vec3A>; 2] {
         let low: Vec<Vec3A> = a.iter().zip(b).map(|(a, b)| a.min(*b)).collect();
         let high: Vec<Vec3A> = a.iter().zip(b).map(|(a, b)| a.max(*b)).collect();
-        [self.refinement.extreme(&low, &high), self.refinement.extreme(&high, &low)].map(|nodes| {
+        [self.refined.extreme(&low, &high), self.refined.extreme(&high, &low)].map(|nodes| {
             (0..self.nodes.len())
                 .into_par_iter()
                 .with_min_len(VERTICES_PER_TASK)
@@ -206,40 +209,40 @@ impl Binding {
     }
 
     /// Lets vertices follow the straight middles of edges instead of the four-point rule, in every state: see
-    /// [`Refinement`]. Returns whether any did not.
+    /// [`Refined`]. Returns whether any did not.
     pub fn straighten(&mut self, vertices: impl Iterator<Item = u32>) -> bool {
         let nodes = &self.nodes;
         // Straight or not, the rest positions are the same.
-        self.refinement.straighten(vertices.flat_map(|v| nodes[v as usize]))
+        self.refined.straighten(vertices.flat_map(|v| nodes[v as usize]))
     }
 
     /// Whether vertices follow the same nodes with the same weights, for two bindings of one boundary to one complex.
     pub fn follows_as(&self, other: &Self) -> bool {
-        self.refinement == other.refinement
+        self.refined == other.refined
     }
 
     /// `[vertices]` means of a quantity of the complex's nodes, by the weights of each vertex's halved element.
     pub fn of_nodes(&self, values: &[f32]) -> Vec<f32> {
-        let node = |i: u32| self.refinement.mean(i, values);
+        let node = |i: u32| self.refined.mean(i, values);
         let vertex = |v: usize| self.nodes[v].iter().zip(&self.weights[v]).map(|(&i, &w)| w * node(i)).sum();
         (0..self.nodes.len()).into_par_iter().with_min_len(VERTICES_PER_TASK).map(vertex).collect()
     }
 
-    /// `[nodes of the halved lattice]` how far each is from its rest position in a state, in cells: what
+    /// `[nodes of the halved lattice that carry a vertex]` how far each is from its rest position in a state, in cells: what
     /// [`nodes`](Self::nodes) and [`weights`](Self::weights) are summed over.
     pub fn displacements(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
-        let mut refined = self.refinement.apply(nodes);
+        let mut refined = self.refined.apply(nodes);
         refined.par_iter_mut().zip(&self.rest_nodes).with_min_len(VERTICES_PER_TASK).for_each(|(p, rest)| *p -= *rest);
         refined
     }
 
     /// The nodes of the complex that carry a node of the halved lattice: of a middle, first the two ends of its edge.
     pub fn ends(&self, node: u32) -> [u32; 4] {
-        self.refinement.carriers(node)
+        self.refined.carriers(node)
     }
 
     /// The complex's nodes that carry a vertex; some come more than once.
     pub fn carriers(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
-        self.nodes[vertex as usize].iter().flat_map(|&node| self.refinement.carriers(node))
+        self.nodes[vertex as usize].iter().flat_map(|&node| self.refined.carriers(node))
     }
 }

@@ -20,11 +20,15 @@ use crate::voxel::{Complex, Dimension, opposite};
 /// Nodes per parallel task.
 const NODES_PER_TASK: usize = 4096;
 
+/// A node of the halved lattice: the complex's nodes that carry it, of a middle first the two ends of its edge, and their
+/// weights; unused ones repeat the first with weight 0.
+type Carried = ([u32; 4], [f32; 4]);
+
 /// The halved lattice: the complex's nodes first, then the middle of each edge.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Refinement {
-    /// `[edges]` up to four nodes and their weights; unused ones repeat the first with weight 0.
-    middles: Vec<([u32; 4], [f32; 4])>,
+    /// `[edges]`
+    middles: Vec<Carried>,
     /// `[nodes]` index of the edge in each forward slot, `u32::MAX` where there is none.
     edge_of: Vec<[u32; 7]>,
     coarse: usize,
@@ -63,57 +67,33 @@ impl Refinement {
         Self { middles, edge_of, coarse: complex.nodes(), axes }
     }
 
-    /// Positions of the halved lattice's nodes.
-    pub fn apply(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
-        let all = 0..self.coarse + self.middles.len();
-        all.into_par_iter().with_min_len(NODES_PER_TASK).map(|k| self.node(k, nodes)).collect()
+    /// All of its nodes.
+    pub fn all(&self) -> Refined {
+        let nodes = (0..self.coarse as u32).map(|i| ([i; 4], [1.0, 0.0, 0.0, 0.0]));
+        Refined(nodes.chain(self.middles.iter().copied()).collect())
     }
 
-    /// Position of one node of the halved lattice.
-    #[inline]
-    pub fn node(&self, k: usize, nodes: &[Vec3A]) -> Vec3A {
-        let Some(edge) = k.checked_sub(self.coarse) else { return nodes[k] };
-        let (at, weights) = &self.middles[edge];
-        at.iter().zip(weights).map(|(&i, &w)| w * nodes[i as usize]).sum()
-    }
-
-    /// The least (or greatest, if `low` and `high` come the other way round) of each node for nodes anywhere between.
-    pub(super) fn extreme(&self, low: &[Vec3A], high: &[Vec3A]) -> Vec<Vec3A> {
-        let mut refined = low.to_vec();
-        refined.extend(self.middles.iter().map(|(at, weights)| -> Vec3A {
-            let least = |i: u32, w: f32| w * if w < 0.0 { high[i as usize] } else { low[i as usize] };
-            at.iter().zip(weights).map(|(&i, &w)| least(i, w)).sum()
-        }));
-        refined
-    }
-
-    /// Sets nodes of the halved lattice onto the straight middle of their edge, in every state. Returns whether any was not.
-    ///
-    /// Where all are straight, the halved lattice is carried by the complex's own elements and is as valid as they are.
-    pub(super) fn straighten(&mut self, nodes: impl Iterator<Item = u32>) -> bool {
-        let mut changed = false;
-        for edge in nodes.filter_map(|node| (node as usize).checked_sub(self.coarse)) {
-            let (at, weights) = &mut self.middles[edge];
-            changed |= weights[0] != 0.5;
-            (*at, *weights) = ([at[0], at[1], at[0], at[0]], [0.5, 0.5, 0.0, 0.0]);
+    /// Those of its nodes that are named, which are named by their places among them from now on.
+    pub(super) fn reduced(&self, names: &mut [[u32; 4]]) -> Refined {
+        let count = self.coarse + self.middles.len();
+        let mut place = vec![u32::MAX; count];
+        for &node in names.iter().flatten() {
+            place[node as usize] = 0;
         }
-        changed
-    }
-
-    /// A quantity of the complex's nodes at a node of the halved lattice, linear along the edge.
-    pub(super) fn mean(&self, node: u32, values: &[f32]) -> f32 {
-        (node as usize).checked_sub(self.coarse).map_or_else(
-            || values[node as usize],
-            |edge| {
-                let [i, j, ..] = self.middles[edge].0;
-                0.5 * (values[i as usize] + values[j as usize])
-            },
-        )
-    }
-
-    /// The nodes of the complex that carry a node of the halved lattice.
-    pub fn carriers(&self, node: u32) -> [u32; 4] {
-        (node as usize).checked_sub(self.coarse).map_or([node; 4], |edge| self.middles[edge].0)
+        let mut refined = Vec::new();
+        for node in 0..count {
+            if place[node] == 0 {
+                place[node] = refined.len() as u32;
+                refined.push(match node.checked_sub(self.coarse) {
+                    None => ([node as u32; 4], [1.0, 0.0, 0.0, 0.0]),
+                    Some(edge) => self.middles[edge],
+                });
+            }
+        }
+        for node in names.iter_mut().flatten() {
+            *node = place[*node as usize];
+        }
+        Refined(refined)
     }
 
     /// The node at lattice offset `at` (each coordinate 0, 1 or 2 halves) of a cell with these corners; in the plane the
@@ -125,6 +105,53 @@ impl Refinement {
             return corners[low];
         }
         self.coarse as u32 + self.edge_of[corners[low] as usize][(low ^ high) - 1]
+    }
+}
+
+/// Nodes of the halved lattice: few of them carry a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refined(Vec<Carried>);
+
+impl Refined {
+    /// `[these nodes]` positions in a state of the complex.
+    pub fn apply(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
+        let at = |(at, weights): &Carried| at.iter().zip(weights).map(|(&i, &w)| w * nodes[i as usize]).sum();
+        self.0.par_iter().with_min_len(NODES_PER_TASK).map(at).collect()
+    }
+
+    /// The least (or greatest, if `low` and `high` come the other way round) of each node for nodes anywhere between.
+    pub(super) fn extreme(&self, low: &[Vec3A], high: &[Vec3A]) -> Vec<Vec3A> {
+        let extreme = |(at, weights): &Carried| -> Vec3A {
+            let least = |i: u32, w: f32| w * if w < 0.0 { high[i as usize] } else { low[i as usize] };
+            at.iter().zip(weights).map(|(&i, &w)| least(i, w)).sum()
+        };
+        self.0.par_iter().with_min_len(NODES_PER_TASK).map(extreme).collect()
+    }
+
+    /// Sets nodes of the halved lattice onto the straight middle of their edge, in every state. Returns whether any was not.
+    ///
+    /// Where all are straight, the halved lattice is carried by the complex's own elements and is as valid as they are.
+    pub(super) fn straighten(&mut self, nodes: impl Iterator<Item = u32>) -> bool {
+        let mut changed = false;
+        for node in nodes {
+            let (at, weights) = &mut self.0[node as usize];
+            if at[0] != at[1] {
+                changed |= weights[0] != 0.5;
+                (*at, *weights) = ([at[0], at[1], at[0], at[0]], [0.5, 0.5, 0.0, 0.0]);
+            }
+        }
+        changed
+    }
+
+    /// A quantity of the complex's nodes at a node of the halved lattice, linear along the edge.
+    pub(super) fn mean(&self, node: u32, values: &[f32]) -> f32 {
+        let [i, j, ..] = self.carriers(node);
+        0.5 * (values[i as usize] + values[j as usize])
+    }
+
+    /// The nodes of the complex that carry a node of the halved lattice, of a middle first the two ends of its edge.
+    pub fn carriers(&self, node: u32) -> [u32; 4] {
+        self.0[node as usize].0
     }
 }
 
@@ -143,7 +170,7 @@ mod tests {
     fn middles_of_a_quadratic_map_are_its_own() {
         let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::splat(4) };
         let complex = Complex::from_cells(grid, &[true; 64]);
-        let refinement = Refinement::new(&complex);
+        let refinement = Refinement::new(&complex).all();
         let nodes: Vec<Vec3A> = complex.rest.iter().map(|&p| bent(p)).collect();
         let (refined, rest) = (refinement.apply(&nodes), refinement.apply(&complex.rest));
         let mut exact = 0;
