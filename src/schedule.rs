@@ -460,8 +460,7 @@ impl Run {
     /// A fault, if it is not done.
     pub fn outcome(&mut self) -> Result<Outcome> {
         let (world, entity) = (self.app.world_mut(), self.entity);
-        rayon::scope(|_| outcome(world, entity))
-            .ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
+        rayon::scope(|_| outcome(world, entity)).ok_or_else(|| Error::Fault("a solved domain lacks a component".into()))
     }
 
     /// The same with the states of the nodes.

@@ -132,9 +132,12 @@ fn check_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Check {
     let largest = from_first.iter().fold(Vec3A::ZERO, |m, e| m.max(e.abs())).max_element();
     let bound = ROUNDING * largest * largest * largest;
     let mut check = Check { smallest: Some(cell), ..Check::NOTHING };
-    for element in KUHN {
-        let [_, b, c, d] = element.map(|k| from_first[k]);
-        let volume = b.dot(c.cross(d));
+    // All elements have the diagonal from corner 0 to 7, and each one edge of the three from corner 0 along an axis: three
+    // cross products serve all six.
+    let [_, x, y, xy, z, xz, yz, diagonal] = from_first;
+    let [of_x, of_y, of_z] = [x, y, z].map(|edge| edge.cross(diagonal));
+    let volumes = [-xy.dot(of_x), xz.dot(of_x), xy.dot(of_y), -yz.dot(of_y), -xz.dot(of_z), yz.dot(of_z)];
+    for (element, volume) in KUHN.into_iter().zip(volumes) {
         let is_clear = volume > bound && volume.is_finite();
         let mut exact = f64::from(volume);
         if !is_clear {
@@ -151,10 +154,16 @@ fn check_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Check {
 const EDGES: [[[usize; 2]; 4]; 3] =
     [[[0, 1], [2, 3], [4, 5], [6, 7]], [[0, 2], [1, 3], [4, 6], [5, 7]], [[0, 4], [1, 5], [2, 6], [3, 7]]];
 
+/// ‖B F − I‖² below which an element cannot turn over, and ‖B‖² ‖F‖² below which all that rounding can do is far less than
+/// the tenth of a norm that is left to it.
+const FAR_FROM_SINGULAR: f32 = 0.8;
+const WELL_CONDITIONED: f32 = 1.0e6;
+
 /// Whether all elements of a cell are proven to be positive all the way. Never wrongly true.
 ///
 /// An element's edges along the axes are the columns of its deformation gradient F. If ‖B F − I‖ < 1 for a matrix B then
-/// det B and det F have one sign; the set of such F is convex, so it is enough to look at both ends.
+/// det B and det F have one sign; the set of such F is convex, so it is enough to look at both ends. One
+/// element then tells the sign for all.
 #[inline]
 fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
     let mut edges = [[Vec3A::ZERO; 8]; 3];
@@ -170,6 +179,17 @@ fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
         return bernstein([from, to]);
     }
     let inverse = middle.inverse();
+    let norm = [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|c| c.length_squared()).iter().sum::<f32>();
+    // ‖B e − B m‖ ≤ ‖B‖ ‖e − m‖ for the mean m of edges e, which is enough for most.
+    let (mut far, mut longest) = (0.0_f32, 0.0_f32);
+    for (along, mean) in edges.iter().zip(mean) {
+        let most = along.iter().fold(0.0_f32, |most, e| most.max((*e - mean).length_squared()));
+        far += most;
+        longest = longest.max(2.0 * (mean.length_squared() + most));
+    }
+    if norm * far < FAR_FROM_SINGULAR && norm * longest < WELL_CONDITIONED {
+        return is_positive(KUHN[0], &to) || bernstein([from, to]);
+    }
     let (mut deviation, mut longest) = (0.0_f32, 0.0_f32);
     for (along, axis) in edges.into_iter().zip([Vec3A::X, Vec3A::Y, Vec3A::Z]) {
         let mut most = 0.0_f32;
@@ -179,10 +199,7 @@ fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
         }
         deviation += most;
     }
-    let norm = [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|c| c.length_squared()).iter().sum::<f32>();
-    // With norms like these all that rounding can do is far below the tenth that is left to it. One element then tells
-    // the sign for all.
-    let is_linear = deviation < 0.8 && norm * longest < 1.0e6;
+    let is_linear = deviation < FAR_FROM_SINGULAR && norm * longest < WELL_CONDITIONED;
     (is_linear && is_positive(KUHN[0], &to)) || bernstein([from, to])
 }
 

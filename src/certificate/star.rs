@@ -8,7 +8,7 @@
 //!
 //! # Practice
 //! Most pairs of triangles with near boxes are neighbours, and nearly all stars are proven with a dozen products each.
-//! What is not proven is left to the exact predicates: a star never says that something crosses.
+//! What is not proven is left to the exact predicates: a star never says that something crosses. So f32 is enough here.
 
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
@@ -61,10 +61,10 @@ impl Stars {
 
     /// `[identities]` stars whose triangles are proven not to cross each other, at one state or all the way between two.
     pub fn proven<const ENDS: usize>(&self, triangles: &[[u32; 3]], ends: [&[Vec3A]; ENDS]) -> Vec<bool> {
-        let normals: Vec<Normals> = triangles
+        let normals: Vec<Facing> = triangles
             .par_iter()
             .with_min_len(STARS_PER_TASK)
-            .map(|t| Normals::of(ends.map(|p| t.map(|v| p[v as usize].as_dvec3()))))
+            .map(|t| Facing::of(ends.map(|p| t.map(|v| p[v as usize]))))
             .collect();
         (0..self.start.len() - 1)
             .into_par_iter()
@@ -127,21 +127,57 @@ impl Normals {
     }
 }
 
+/// The same as [`Normals`] in f32.
+#[derive(Clone, Copy)]
+struct Facing {
+    coefficients: [Vec3A; 3],
+    largest: f32,
+}
+
+/// As [`ROUNDING`], of roundings of 2⁻²⁴.
+pub(super) const SINGLE_ROUNDING: f32 = 6.0e-6;
+
+impl Facing {
+    #[inline]
+    fn of<const ENDS: usize>(ends: [[Vec3A; 3]; ENDS]) -> Self {
+        let edges = ends.map(|[a, b, c]| [b - a, c - a]);
+        let largest = edges.iter().flatten().fold(Vec3A::ZERO, |m, e| m.max(e.abs())).max_element();
+        let [[u, v], [x, y]] = [edges[0], edges[ENDS - 1]];
+        let start = u.cross(v);
+        let coefficients = if ENDS == 1 { [start; 3] } else { [start, 0.5 * (u.cross(y) + x.cross(v)), x.cross(y)] };
+        Self { coefficients, largest }
+    }
+
+    fn sum(&self) -> Vec3A {
+        self.coefficients[0] + self.coefficients[1] + self.coefficients[2]
+    }
+
+    /// Whether the triangle is positively oriented along a unit vector all the way; never wrongly true. Where products
+    /// leave the range of f32, it is not proven.
+    #[inline]
+    fn is_along(&self, direction: Vec3A) -> bool {
+        let bound = SINGLE_ROUNDING * self.largest * self.largest * SUM_OF_UNIT;
+        bound > f32::MIN_POSITIVE && self.coefficients.iter().all(|n| n.dot(direction) > bound)
+    }
+}
+
+/// The components of a unit vector sum up to at most this, and room.
+const SUM_OF_UNIT: f32 = 1.8;
+
 /// Whether a closed fan is seen without overlap along the sum of its normals. Never wrongly true.
-fn is_seen_whole(fan: &[(u32, u8)], triangles: &[[u32; 3]], normals: &[Normals], start: &[Vec3A]) -> bool {
-    let direction: DVec3 =
-        fan.iter().map(|&(t, _)| normals[t as usize].coefficients.iter().sum::<DVec3>()).sum::<DVec3>();
-    if !fan.iter().all(|&(t, _)| normals[t as usize].are_along(direction)) {
+fn is_seen_whole(fan: &[(u32, u8)], triangles: &[[u32; 3]], normals: &[Facing], start: &[Vec3A]) -> bool {
+    let direction = fan.iter().map(|&(t, _)| normals[t as usize].sum()).sum::<Vec3A>().normalize_or_zero();
+    if !fan.iter().all(|&(t, _)| normals[t as usize].is_along(direction)) {
         return false;
     }
     // Every triangle turns the same way by less than half a turn, so each time around passes once from behind a plane to
     // before it, where the direction lies in the plane. It is one that no edge of a lattice lies in.
-    let across = direction.cross(DVec3::new(0.618_034, 0.754_878, 0.219_372));
+    let across = direction.cross(Vec3A::new(0.618_034, 0.754_878, 0.219_372));
     let mut turns = 0;
     for &(t, k) in fan {
         let k = usize::from(k);
-        let at = triangles[t as usize].map(|v| start[v as usize].as_dvec3());
-        let bound = ROUNDING * normals[t as usize].largest * direction.abs().element_sum();
+        let at = triangles[t as usize].map(|v| start[v as usize]);
+        let bound = SINGLE_ROUNDING * normals[t as usize].largest * SUM_OF_UNIT;
         let [a, b] = [1, 2].map(|step| across.dot(at[(k + step) % 3] - at[k]));
         if a.abs() <= bound || b.abs() <= bound {
             return false;

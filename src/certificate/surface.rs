@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::voxel::Dimension;
 
 use super::{
-    motion::{HALVINGS, Moving, stay_apart},
+    motion::{HALVINGS, Moving, lie_apart, stay_apart},
     predicates::{Triangle, segments_cross, triangles_cross},
     star::Stars,
     tree::{Bounds, Boxes, Tree, may_meet, union},
@@ -191,6 +191,13 @@ impl Surface {
             .with_min_len(PAIRS_PER_TASK / 8)
             .filter(|&(s, t)| {
                 let [s_ids, t_ids] = [s, t].map(|t| self.identities[t as usize]);
+                if !s_ids.iter().any(|id| t_ids.contains(id)) {
+                    let [s, t] = [s, t].map(|t| self.triangles[t as usize]);
+                    let place = |corners: [u32; 3]| ends.map(|p| corners.map(|v| p[v as usize]));
+                    if lie_apart(place(s), place(t)) {
+                        return false;
+                    }
+                }
                 !stay_apart(&moving(s), &moving(t), s_ids, t_ids, halvings)
             })
             .collect();

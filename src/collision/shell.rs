@@ -205,6 +205,13 @@ impl Shell {
         pairs
     }
 
+    /// The same of the rest state, for the `[nodes]` rest positions: of a surface in space that was bound there are none by
+    /// definition, since all that [`boundary`](Self::boundary) found to cross there is inherited.
+    pub(crate) fn crossings_at_rest(&self, rest: &[Vec3A]) -> Vec<(u32, u32)> {
+        let was_searched = self.binding.is_some() && self.flat_elements.is_empty();
+        if was_searched { Vec::new() } else { self.crossings(rest) }
+    }
+
     /// Triangles of a flat surface that are not positively oriented in a state. Exact.
     pub fn inverted(&self, nodes: &[Vec3A]) -> Vec<u32> {
         if self.flat_elements.is_empty() { Vec::new() } else { self.inverted_at(&self.positions(nodes)) }

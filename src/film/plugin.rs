@@ -5,7 +5,7 @@ use glam::Vec3A;
 
 use super::{Film, Keyframe, is_clear, straighten};
 use crate::{
-    certificate::{Certificate, certify, certify_way},
+    certificate::{Certificate, certify, certify_rest, certify_way},
     collision::{
         Placed, Shell, Watch, guard,
         plugin::{BoundaryAtRisk, Growing, Leap, Shells, Sizes, Warped},
@@ -33,7 +33,7 @@ type Unfilmed = (With<Growing>, Without<Reel>);
 fn open(mut commands: Commands, domains: Query<(Entity, &Lattice, &Shells), Unfilmed>, mut watch: ResMut<Stopwatch>) {
     for (entity, Lattice(complex), shells) in &domains {
         let mut film = Film::default();
-        let certificate = watch.time("certificate", || certify(complex, &shells.0, &complex.rest));
+        let certificate = watch.time("certificate", || certify_rest(complex, &shells.0));
         film.push(Keyframe { lambda: 0.0, positions: complex.rest.clone(), certificate, way_is_clear: true });
         commands.entity(entity).insert(Reel(film));
     }
