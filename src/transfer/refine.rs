@@ -75,20 +75,17 @@ impl Refinement {
 
     /// Those of its nodes that are named, which are named by their places among them from now on.
     pub(super) fn reduced(&self, names: &mut [[u32; 4]]) -> Refined {
-        let count = self.coarse + self.middles.len();
-        let mut place = vec![u32::MAX; count];
+        let mut place = vec![u32::MAX; self.coarse + self.middles.len()];
         for &node in names.iter().flatten() {
             place[node as usize] = 0;
         }
         let mut refined = Vec::new();
-        for node in 0..count {
-            if place[node] == 0 {
-                place[node] = refined.len() as u32;
-                refined.push(match node.checked_sub(self.coarse) {
-                    None => ([node as u32; 4], [1.0, 0.0, 0.0, 0.0]),
-                    Some(edge) => self.middles[edge],
-                });
-            }
+        for (node, place) in place.iter_mut().enumerate().filter(|(_, place)| **place == 0) {
+            *place = refined.len() as u32;
+            refined.push(match node.checked_sub(self.coarse) {
+                None => ([node as u32; 4], [1.0, 0.0, 0.0, 0.0]),
+                Some(edge) => self.middles[edge],
+            });
         }
         for node in names.iter_mut().flatten() {
             *node = place[*node as usize];
