@@ -49,8 +49,8 @@ pub(super) fn inverted_cells(complex: &Complex, positions: &[Vec3A]) -> Vec<usiz
         .collect()
 }
 
-/// Checks all elements of the state `to`, and whether they are positive all the way there; where that is not proven, at
-/// `samples`, parts of the way.
+/// Checks all elements of the state `to`, and whether they are positive all the way there; where that is not proven, in
+/// space at `samples`, parts of the way.
 pub(super) fn check_way(complex: &Complex, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> (Check, bool) {
     let check_cell = checker(complex.dimension);
     let stays_positive = match complex.dimension {
@@ -71,10 +71,11 @@ pub(super) fn check_way(complex: &Complex, from: &[Vec3A], to: &[Vec3A], samples
             },
         );
     let positive = doubtful.is_empty()
-        || samples.iter().all(|&part| {
-            let between = blend(from, to, part);
-            doubtful.iter().all(|&cell| check_cell(cell, &complex.corners[cell], &between).inverted == 0)
-        });
+        || complex.dimension == Dimension::Three
+            && samples.iter().all(|&part| {
+                let between = blend(from, to, part);
+                doubtful.iter().all(|&cell| check_cell(cell, &complex.corners[cell], &between).inverted == 0)
+            });
     (check, positive)
 }
 
@@ -102,7 +103,8 @@ fn check_flat_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Chec
     check
 }
 
-fn flat_cell_stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
+/// Whether both elements of a flat cell are proven to be positive all the way of a straight motion. Never wrongly true.
+pub(crate) fn flat_cell_stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
     Dimension::Two.elements().iter().all(|&[a, b, c, _]| flat_stays_positive(ends.map(|at| [at[a], at[b], at[c]])))
 }
 

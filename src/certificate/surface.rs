@@ -8,6 +8,7 @@ use crate::voxel::Dimension;
 use super::{
     motion::{HALVINGS, Moving, lie_apart, stay_apart},
     predicates::{Triangle, segments_cross, triangles_cross},
+    segments,
     star::Stars,
     tree::{Bounds, Boxes, Tree, may_meet, union},
 };
@@ -174,14 +175,36 @@ impl Surface {
         })
     }
 
+    /// Whether it is of the plane.
+    pub fn is_flat(&self) -> bool {
+        self.dimension == Dimension::Two
+    }
+
     /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart all the way of a straight
     /// motion of the corners. Few, where nothing crosses.
     pub fn doubtful_pairs(&self, from: &[Vec3A], to: &[Vec3A]) -> Vec<(u32, u32)> {
         self.not_apart(self.unproven_pairs([from, to]), [from, to], HALVINGS)
     }
 
+    /// Of pairs of segments, those that are not proven to stay apart all the way of a straight motion of their ends.
+    pub(crate) fn unproven_segments(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
+        debug_assert_eq!(self.dimension, Dimension::Two);
+        let moving = |s: u32| {
+            let [a, b, _] = self.triangles[s as usize];
+            ends.map(|p| [a, b].map(|v| p[v as usize].as_dvec3().truncate()))
+        };
+        let ids = |s: u32| [self.identities[s as usize][0], self.identities[s as usize][1]];
+        let left = pairs.into_par_iter().with_min_len(PAIRS_PER_TASK / 8);
+        left.filter(|&(s, t)| !segments::stay_apart(&moving(s), &moving(t), ids(s), ids(t))).collect()
+    }
+
     /// Sorts pairs and leaves out those that some direction proves apart.
     fn not_apart(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2], halvings: u32) -> Vec<(u32, u32)> {
+        if self.dimension == Dimension::Two {
+            let mut left = self.unproven_segments(pairs, ends);
+            left.par_sort_unstable();
+            return left;
+        }
         let moving = |t: u32| -> Moving {
             let corners = self.triangles[t as usize];
             ends.map(|p| corners.map(|v| p[v as usize].as_dvec3()))

@@ -271,11 +271,6 @@ impl Growth {
         self.iteration = self.patience;
     }
 
-    /// Whether what is asked was just changed.
-    pub fn is_corrected(&self) -> bool {
-        self.at_end() && self.iteration > 0 && self.motion.is_infinite()
-    }
-
     /// Settles for less at λ = 1.
     pub fn hurry(&mut self) {
         self.patience = HURRIED_ITERATIONS;

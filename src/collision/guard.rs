@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::Shell;
 use crate::{
-    certificate::{enclosed_solids, is_positive},
+    certificate::{enclosed_solids, flat_cell_stays_positive, is_positive},
     edge::CHUNK,
     film::blend,
     voxel::{Complex, Dimension},
@@ -43,24 +43,22 @@ pub struct Guarded {
     pub rounds: u32,
 }
 
-/// Where on the way of a step its validity is looked at, as parts of the step.
+/// Where on the way of a step its validity is looked at. In the plane, where steps are long, the skin is proven to stay
+/// apart on all of the way in either case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Watch {
     /// At its end: enough for the skin, whose cells are thicker than a step is long.
     End,
-    /// At its end, and the surfaces on the way too: for long steps in the plane, which thin parts must not jump over.
-    Surfaces,
-    /// All of it on the way too: for sheets of the boundary, which may lie nearer to each other than a step is long and
-    /// must not change places unseen, and for keyframes, whose blends are shown.
+    /// On the way too: for sheets of the boundary, which may lie nearer to each other than a step is long and must not
+    /// change places unseen, and for keyframes, whose blends are shown.
     Way,
 }
 
 impl Watch {
-    /// Parts of the step that are looked at, the last one 1.
+    /// Parts of the step that are looked at in space, the last one 1.
     pub const fn parts(self) -> &'static [f32] {
         match self {
             Self::End => &[1.0],
-            Self::Surfaces => &[0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0],
             Self::Way => &[0.25, 0.5, 0.75, 1.0],
         }
     }
@@ -86,8 +84,7 @@ pub fn guard(
     for hold in holds.iter_mut() {
         *hold = hold.saturating_sub(1);
     }
-    let rim = (0..complex.nodes()).filter(|&i| complex.on_boundary[i]).collect();
-    let step = Step { complex, shells, near: &near, size, current, watch, rim };
+    let step = Step { complex, shells, near: &near, size, current, watch };
     for whole in WHOLE_STEPS {
         let target =
             if whole < 1.0 { Cow::Owned(blend(current, &full, whole)) } else { Cow::Borrowed(full.as_slice()) };
@@ -109,8 +106,6 @@ struct Step<'a> {
     size: &'a [f32],
     current: &'a [Vec3A],
     watch: Watch,
-    /// Nodes on the boundary.
-    rim: Vec<usize>,
 }
 
 impl Step<'_> {
@@ -163,30 +158,34 @@ impl Step<'_> {
 
     /// Nodes of what the step would break, of what has a node in `moved` if given.
     fn faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
+        if self.complex.dimension == Dimension::Two {
+            return self.flat_faults(proposed, moved);
+        }
         let mut marked = Vec::new();
-        // In the plane steps are longer.
-        let is_flat = self.complex.dimension == Dimension::Two;
-        let parts = if is_flat && self.watch == Watch::Way { Watch::Surfaces.parts() } else { self.watch.parts() };
-        // Where only the skin is looked at on the way, only its nodes are moved there.
-        let mut skin = (self.watch == Watch::Surfaces && self.shells.len() == 1).then(|| proposed.to_vec());
-        for &part in parts {
-            let state: Cow<'_, [Vec3A]> = match &mut skin {
-                _ if part == 1.0 => Cow::Borrowed(proposed),
-                Some(skin) => {
-                    for &i in &self.rim {
-                        skin[i] = self.current[i] + part * (proposed[i] - self.current[i]);
-                    }
-                    Cow::Borrowed(skin)
-                }
-                None => Cow::Owned(blend(self.current, proposed, part)),
-            };
-            if part == 1.0 || self.watch == Watch::Way {
-                marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
-                marked.extend(self.enclosed(&state));
-            }
+        for &part in self.watch.parts() {
+            let state: Cow<'_, [Vec3A]> =
+                if part < 1.0 { Cow::Owned(blend(self.current, proposed, part)) } else { Cow::Borrowed(proposed) };
+            marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
+            marked.extend(self.enclosed(&state));
             for (shell, near) in self.shells.iter().zip(self.near) {
                 shell.mark_crossings(near, &state, moved, &mut marked);
             }
+        }
+        marked
+    }
+
+    /// The same in the plane: what is not proven counts as broken. What keeps apart on all of the way does not come to lie
+    /// within another.
+    fn flat_faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
+        let mut marked = bad_cells(self.complex, self.size, self.current, proposed, moved);
+        let is_doubtful = |corners: &&[u32; 8]| {
+            moved.is_none_or(|moved| corners.iter().any(|&c| moved[c as usize]))
+                && !flat_cell_stays_positive([self.current, proposed].map(|p| corners.map(|c| p[c as usize])))
+        };
+        let cells = self.complex.corners.par_iter().with_min_len(CELLS_PER_TASK);
+        marked.extend(cells.filter(is_doubtful).flatten_iter().collect::<Vec<_>>());
+        for (shell, near) in self.shells.iter().zip(self.near) {
+            shell.mark_unproven(near, [self.current, proposed], moved, &mut marked);
         }
         marked
     }

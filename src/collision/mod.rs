@@ -45,7 +45,7 @@ const GLOBAL_STEPS: [u32; 2] = [1, 2];
 /// a wall of one cell is not skipped by one.
 const STEP_LIMIT: f32 = 0.5;
 
-/// The same in the plane, where large parts have to flow far: a long step is looked at on its way.
+/// The same in the plane, where large parts have to flow far: all of a step's way is proven to be clear.
 const FLAT_STEP_LIMIT: f32 = 4.0;
 
 /// How near pairs are kept for the iterations of a leap, in radii.
@@ -250,12 +250,7 @@ pub fn guard_step(
         Dimension::Three => STEP_LIMIT,
     };
     guard::limit(positions, &mut proposed, |i| reach * asked.radius[i].min(1.0));
-    let is_far = complex.dimension == Dimension::Two && largest_motion(positions, &proposed) > STEP_LIMIT;
-    let watch = match shells.len() {
-        2.. => Watch::Way,
-        _ if is_far => Watch::Surfaces,
-        _ => Watch::End,
-    };
+    let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
     let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
     let motion = largest_motion(positions, &proposed);
     *positions = proposed;

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     diagnostics::Stopwatch,
     edge::{CHUNK, plugin::LinearSolution},
-    film::blend,
+    film::{blend, plugin::Reel},
     importance::{asked_sizes, plugin::Importance, smoothed},
     schedule::{Domain, Solve, Stage},
     voxel::{
@@ -199,12 +199,21 @@ fn grow_sizes(
     }
 }
 
-type Led<'a> =
-    (&'a Lattice, &'a mut Flowing, &'a Sizes, &'a BoundaryAtRisk, &'a Growing, &'a mut Shells, &'a mut Warped);
+type Led<'a> = (
+    &'a Lattice,
+    &'a mut Flowing,
+    &'a Sizes,
+    &'a BoundaryAtRisk,
+    &'a Growing,
+    &'a mut Shells,
+    &'a mut Warped,
+    Option<&'a mut Reel>,
+);
 
 /// Maps begin each step of λ by a flow.
 fn flow(mut domains: Query<Led>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), mut flowing, Sizes(asked), at_risk, Growing(growth), mut shells, mut warped) in &mut domains
+    for (Lattice(complex), mut flowing, Sizes(asked), at_risk, Growing(growth), mut shells, mut warped, reel) in
+        &mut domains
     {
         if growth.done() || !growth.flows() {
             continue;
@@ -214,6 +223,9 @@ fn flow(mut domains: Query<Led>, mut watch: ResMut<Stopwatch>) {
         watch.time("guard", || {
             guard_step(complex, asked, &mut shells.0[..guarded], &mut warped.0, proposed, &mut Vec::new())
         });
+        if let Some(mut reel) = reel {
+            reel.0.pass(&warped.0);
+        }
     }
 }
 

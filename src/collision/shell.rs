@@ -172,30 +172,62 @@ impl Shell {
         moved: Option<&[bool]>,
         marked: &mut Vec<u32>,
     ) {
-        let vertex_moved: Option<Vec<bool>> = moved.map(|moved| match &self.binding {
+        let again = self.touched(near, self.moved_vertices(moved).as_deref());
+        if again.is_empty() {
+            return;
+        }
+        let crossing = self.surface.crossing_pairs(&again, &self.positions(nodes));
+        for (s, t) in crossing.into_iter().filter(|&pair| !self.is_inherited(pair)) {
+            marked.extend(self.nodes_of_triangle(s));
+            marked.extend(self.nodes_of_triangle(t));
+        }
+    }
+
+    /// In the plane, adds the nodes of pairs among `near` that are not proven to stay apart on the straight way between two
+    /// states, and of flat elements that are not proven to stay positive: of those that have a node in `moved` if given.
+    pub(super) fn mark_unproven(
+        &self,
+        near: &[(u32, u32)],
+        [from, to]: [&[Vec3A]; 2],
+        moved: Option<&[bool]>,
+        marked: &mut Vec<u32>,
+    ) {
+        let moved = self.moved_vertices(moved);
+        let again = self.touched(near, moved.as_deref());
+        if again.is_empty() && self.flat_elements.is_empty() {
+            return;
+        }
+        let ends = [self.positions(from), self.positions(to)];
+        for (s, t) in self.surface.unproven_segments(again, [&ends[0], &ends[1]]) {
+            marked.extend(self.nodes_of_triangle(s));
+            marked.extend(self.nodes_of_triangle(t));
+        }
+        let is_doubtful = |t: &&[u32; 3]| {
+            moved.as_ref().is_none_or(|moved| t.iter().any(|&v| moved[v as usize]))
+                && !flat_stays_positive([0, 1].map(|end| t.map(|v| ends[end][v as usize])))
+        };
+        let doubtful: Vec<&[u32; 3]> = self.flat_elements.par_iter().with_min_len(2048).filter(is_doubtful).collect();
+        marked.extend(doubtful.into_iter().flatten().flat_map(|&v| self.nodes_of(v)));
+    }
+
+    /// `[vertices]` whether one of the nodes that carry each has moved.
+    fn moved_vertices(&self, moved: Option<&[bool]>) -> Option<Vec<bool>> {
+        moved.map(|moved| match &self.binding {
             None => moved.to_vec(),
             Some(binding) => (0..binding.nodes.len() as u32)
                 .into_par_iter()
                 .map(|v| binding.carriers(v).any(|i| moved[i as usize]))
                 .collect(),
-        });
+        })
+    }
+
+    /// Of `pairs`, those that have a vertex in `moved`; all, if it is not given.
+    fn touched(&self, pairs: &[(u32, u32)], moved: Option<&[bool]>) -> Vec<(u32, u32)> {
         let touched = |t: u32| {
             let corners = &self.surface.triangles[t as usize];
-            vertex_moved.as_ref().is_none_or(|moved| corners.iter().any(|&v| moved[v as usize]))
+            moved.is_none_or(|moved| corners.iter().any(|&v| moved[v as usize]))
         };
-        let again: Vec<(u32, u32)> = near.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect();
-        if again.is_empty() && self.flat_elements.is_empty() {
-            return;
-        }
-        let positions = self.positions(nodes);
-        for t in self.inverted_at(&positions) {
-            marked.extend(self.flat_elements[t as usize].iter().flat_map(|&v| self.nodes_of(v)));
-        }
-        let crossing = self.surface.crossing_pairs(&again, &positions);
-        for (s, t) in crossing.into_iter().filter(|&pair| !self.is_inherited(pair)) {
-            marked.extend(self.nodes_of_triangle(s));
-            marked.extend(self.nodes_of_triangle(t));
-        }
+        pairs.iter().filter(|&&(s, t)| touched(s) || touched(t)).copied().collect()
     }
 
     /// All crossing pairs of a state that were not there at rest. Exact.
@@ -217,33 +249,51 @@ impl Shell {
         if self.flat_elements.is_empty() { Vec::new() } else { self.inverted_at(&self.positions(nodes)) }
     }
 
-    /// Whether the triangles of a flat surface stay positive on the straight way between two states: proven at every
-    /// instant; those on which no proof comes out are looked at in `samples`, parts of the way, and at its end.
-    pub fn stays_unfolded(&self, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> bool {
+    /// Whether the triangles of a flat surface are proven to stay positive on the straight way between two states.
+    pub fn stays_unfolded(&self, from: &[Vec3A], to: &[Vec3A]) -> bool {
         if self.flat_elements.is_empty() {
             return true;
         }
         let ends = [self.positions(from), self.positions(to)];
         let is_proven = |t: &[u32; 3]| flat_stays_positive([0, 1].map(|end| t.map(|v| ends[end][v as usize])));
-        if self.flat_elements.par_iter().with_min_len(2048).all(is_proven) {
-            return true;
-        }
-        samples.iter().chain(&[1.0]).all(|&part| self.inverted(&blend(from, to, part)).is_empty())
+        self.flat_elements.par_iter().with_min_len(2048).all(is_proven)
     }
 
-    /// Makes a flat surface follow the complex's own elements where it turns over or crosses itself in a state although
-    /// they do not: four-point rules overshoot where sizes change abruptly. Returns whether anything was changed.
-    pub fn straighten(&mut self, nodes: &[Vec3A]) -> bool {
+    /// Makes a flat surface follow the complex's own elements where it is not proven to keep from turning over and from
+    /// crossing itself on the straight way between two states, although they are: four-point rules overshoot where sizes
+    /// change abruptly. A state is a way that leads nowhere. Returns the vertices that follow otherwise now.
+    pub fn straighten(&mut self, [from, to]: [&[Vec3A]; 2]) -> Vec<u32> {
         if self.flat_elements.is_empty() {
-            return false;
+            return Vec::new();
         }
-        let positions = self.positions(nodes).into_owned();
-        let mut vertices: Vec<u32> =
-            self.inverted_at(&positions).iter().flat_map(|&t| self.flat_elements[t as usize]).collect();
-        for (s, t) in self.surface.crossings(&positions) {
-            vertices.extend(self.surface.triangles[s as usize].iter().chain(&self.surface.triangles[t as usize]));
+        let ends = [from, to].map(|nodes| self.positions(nodes).into_owned());
+        let doubtful = self.doubtful_corners([&ends[0], &ends[1]], |_| true);
+        self.binding.as_mut().map_or_else(Vec::new, |binding| binding.straighten(doubtful.into_iter()))
+    }
+
+    /// Whether a flat surface is proven to stay as it should be on the straight way between two states, as far as the
+    /// vertices in `changed` are concerned. True for others.
+    pub fn stays_sound(&self, changed: &[bool], [from, to]: [&[Vec3A]; 2]) -> bool {
+        if self.flat_elements.is_empty() {
+            return true;
         }
-        self.binding.as_mut().is_some_and(|binding| binding.straighten(vertices.into_iter()))
+        let ends = [from, to].map(|nodes| self.positions(nodes));
+        self.doubtful_corners([&ends[0], &ends[1]], |t| t.iter().any(|&v| changed[v as usize])).is_empty()
+    }
+
+    /// Corners of a flat surface's elements and lines that are not proven to stay positive and apart on a straight way of
+    /// its vertices: of those, and of pairs with one of those, that `concerns` says yes to.
+    fn doubtful_corners(&self, ends: [&[Vec3A]; 2], concerns: impl Fn(&[u32; 3]) -> bool + Sync) -> Vec<u32> {
+        let is_doubtful = |t: &&[u32; 3]| concerns(t) && !flat_stays_positive(ends.map(|at| t.map(|v| at[v as usize])));
+        let elements = self.flat_elements.par_iter().with_min_len(2048).filter(is_doubtful);
+        let mut corners: Vec<u32> = elements.flatten_iter().copied().collect();
+        let mut near = self.surface.near_pairs(ends[0], ends[1], 0.0);
+        let line = |s: u32| &self.surface.triangles[s as usize];
+        near.retain(|&(s, t)| concerns(line(s)) || concerns(line(t)));
+        for (s, t) in self.surface.unproven_segments(near, ends) {
+            corners.extend(line(s).iter().chain(line(t)));
+        }
+        corners
     }
 
     /// How its vertices follow the nodes, where they are not the nodes.
@@ -275,10 +325,12 @@ impl Shell {
             return (doubtful, true);
         }
         let crossing = self.surface.crossing_pairs(&doubtful, end);
-        let clear = samples.iter().all(|&part| {
-            let between = blend(from, to, part);
-            self.surface.crossing_pairs(&doubtful, &self.positions(&between)).is_empty()
-        });
+        // In the plane every distance that is kept is proven.
+        let clear = !self.surface.is_flat()
+            && samples.iter().all(|&part| {
+                let between = blend(from, to, part);
+                self.surface.crossing_pairs(&doubtful, &self.positions(&between)).is_empty()
+            });
         (crossing, clear)
     }
 

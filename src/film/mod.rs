@@ -6,7 +6,7 @@
 
 pub mod plugin;
 
-use glam::{DVec2, Vec3A};
+use glam::{DVec2, Vec2, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
@@ -33,13 +33,17 @@ pub struct Keyframe {
 #[derive(Debug, Clone, Default)]
 pub struct Film {
     keyframes: Vec<Keyframe>,
-    /// λ and positions of states that the growth passed between keyframes whose way is not known to be clear, ascending.
-    passed: Vec<(f32, Vec<Vec3A>)>,
+    /// λ and flat positions of states that the growth passed between keyframes whose way is not known to be clear, ascending.
+    passed: Vec<(f32, Vec<Vec2>)>,
     /// Those since the last keyframe.
-    passing: Vec<Vec<Vec3A>>,
-    /// Whether a surface follows the states in another way than when the keyframes were certified.
-    is_stale: bool,
+    passing: Vec<Vec<Vec2>>,
+    /// Vertices that follow the states otherwise than when the keyframes were certified.
+    stale: Vec<u32>,
 }
+
+/// States that are passed on the way to a keyframe may take this much memory; where they would take more, each second is
+/// let go.
+const MOST_PASSED_BYTES: usize = 256 << 20;
 
 /// Between keyframes nearer in λ than this no other is put.
 const SHORTEST_STEP: f32 = 0.03;
@@ -60,7 +64,7 @@ impl Film {
         }
         let mut passing = std::mem::take(&mut self.passing);
         // What came after a state that was returned to is no way there.
-        let end = passing.iter().position(|positions| *positions == keyframe.positions).unwrap_or(passing.len());
+        let end = passing.iter().position(|positions| is_at(positions, &keyframe.positions)).unwrap_or(passing.len());
         passing.truncate(end);
         if let (Some(last), false) = (self.keyframes.last(), keyframe.way_is_clear) {
             let step = (keyframe.lambda - last.lambda) / (passing.len() + 1) as f32;
@@ -70,21 +74,33 @@ impl Film {
         self.keyframes.push(keyframe);
     }
 
-    /// Keeps a state on the way to the next keyframe, in case that the straight way there is not clear.
-    pub fn pass(&mut self, positions: Vec<Vec3A>) {
-        self.passing.push(positions);
+    /// Keeps a flat state on the way to the next keyframe, in case that the straight way there is not clear. From each to
+    /// the next the way must be.
+    pub fn pass(&mut self, positions: &[Vec3A]) {
+        if size_of::<Vec2>() * positions.len() * self.passing.len() > MOST_PASSED_BYTES {
+            let mut is_kept = false;
+            self.passing.retain(|_| {
+                is_kept = !is_kept;
+                is_kept
+            });
+        }
+        self.passing.push(positions.iter().map(|p| p.truncate()).collect());
     }
 
-    /// Notes that a surface follows the states in another way from now on: what was certified has to be certified again.
-    pub fn follows_anew(&mut self) {
-        self.is_stale = true;
+    /// Makes flat surfaces follow the complex on the straight way between two states, where they must; whether that changed
+    /// any.
+    fn straighten(&mut self, shells: &mut [Shell], way: [&[Vec3A]; 2]) -> bool {
+        let before = self.stale.len();
+        self.stale.extend(shells.iter_mut().flat_map(|shell| shell.straighten(way)));
+        self.stale.len() > before
     }
 
     /// The middle one of the states that were passed between two λ, if there are any.
     fn take_passed(&mut self, from: f32, to: f32) -> Option<(f32, Vec<Vec3A>)> {
         let first = self.passed.partition_point(|(lambda, _)| *lambda <= from);
         let end = self.passed.partition_point(|(lambda, _)| *lambda < to);
-        (first < end).then(|| self.passed.remove(first.midpoint(end)))
+        let (lambda, flat) = (first < end).then(|| self.passed.remove(first.midpoint(end)))?;
+        Some((lambda, flat.into_iter().map(|p| p.extend(0.0).to_vec3a()).collect()))
     }
 
     /// All keyframes.
@@ -92,20 +108,23 @@ impl Film {
         &self.keyframes
     }
 
-    /// Makes every blend of two neighbouring keyframes valid, as [`certify_way`] has it: by new keyframes between them, the
-    /// states that were passed there first, and where that does not help, by drawing the later one back to what can be
-    /// reached from the earlier.
+    /// Makes every blend of two neighbouring keyframes valid, as [`certify_way`] has it. A flat surface that alone is in the
+    /// way follows the complex. Else there are new keyframes between, the states that were passed there first, and where that
+    /// does not help, the later one is drawn back to what can be reached from the earlier.
     pub fn mend(&mut self, complex: &Complex, shells: &mut [Shell], size: &[f32]) {
-        if self.straighten(shells) || std::mem::take(&mut self.is_stale) {
-            self.certify_again(complex, shells);
-        }
         let shortest = match complex.dimension {
             Dimension::Two => SHORTEST_FLAT_STEP / self.keyframes.len().saturating_sub(1).max(1) as f32,
             Dimension::Three => SHORTEST_STEP,
         };
-        let mut k = 1;
-        while k < self.keyframes.len() {
-            let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
+        let mut k = 1_usize;
+        loop {
+            if self.certify_again(complex, shells) {
+                k = 1;
+            }
+            let [from, to] = match self.keyframes.get(k.saturating_sub(1)..=k) {
+                Some([from, to]) => [from, to],
+                _ => break,
+            };
             if !from.certificate.certified() || to.way_is_clear {
                 k += 1;
                 continue;
@@ -116,17 +135,20 @@ impl Film {
                 continue;
             }
             let [a, b] = [from.lambda, to.lambda];
+            if complex.dimension == Dimension::Two && is_clear(complex, &shells[..1], from, to) {
+                let way = [from.positions.clone(), to.positions.clone()];
+                if self.straighten(shells, [&way[0], &way[1]]) {
+                    continue;
+                }
+            }
             if let Some((lambda, positions)) = self.take_passed(a, b) {
-                let certificate = certify(complex, shells, &positions);
+                let mut certificate = certify(complex, shells, &positions);
+                while !certificate.certified() && self.straighten(shells, [&positions, &positions]) {
+                    certificate = certify(complex, shells, &positions);
+                }
                 if certificate.certified() {
                     self.keyframes.insert(k, Keyframe { lambda, positions, certificate, way_is_clear: false });
                 }
-                continue;
-            }
-            if self.straighten_way(k, shells) {
-                while self.straighten(shells) | self.straighten_way(k, shells) {}
-                self.certify_again(complex, shells);
-                k = 1;
                 continue;
             }
             let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
@@ -144,48 +166,41 @@ impl Film {
         }
         (self.passed, self.passing) = (Vec::new(), Vec::new());
     }
+
+    /// Certifies anew what stale vertices have changed: what is proven to be sound where they are stays certified. Whether
+    /// there were any.
+    fn certify_again(&mut self, complex: &Complex, shells: &[Shell]) -> bool {
+        let stale = std::mem::take(&mut self.stale);
+        let Some(&last) = stale.iter().max() else { return false };
+        let vertices = shells.iter().filter_map(Shell::binding).map(|binding| binding.nodes.len()).max();
+        let mut changed = vec![false; vertices.unwrap_or(0).max(last as usize + 1)];
+        for vertex in stale {
+            changed[vertex as usize] = true;
+        }
+        let stays_sound = |way: [&[Vec3A]; 2]| shells.iter().all(|shell| shell.stays_sound(&changed, way));
+        for k in 0..self.keyframes.len() {
+            let positions = &self.keyframes[k].positions;
+            let way_is_clear = self.keyframes[k].way_is_clear
+                && (k == 0 || stays_sound([&self.keyframes[k - 1].positions, positions]));
+            // A clear way ends in a state that is certified.
+            if !way_is_clear && !(self.keyframes[k].certificate.certified() && stays_sound([positions, positions])) {
+                self.keyframes[k].certificate = certify(complex, shells, positions);
+            }
+            self.keyframes[k].way_is_clear = way_is_clear;
+        }
+        true
+    }
 }
 
-impl Film {
-    /// Makes a flat surface follow the complex where it must in any state that was solved, those passed included; whether
-    /// that changed any.
-    fn straighten(&self, shells: &mut [Shell]) -> bool {
-        let mut changed = false;
-        let solved = || {
-            let keyframes = self.keyframes.iter().map(|k| &k.positions);
-            keyframes.chain(self.passed.iter().map(|(_, positions)| positions))
-        };
-        while solved().filter(|positions| straighten(shells, positions)).count() > 0 {
-            changed = true;
-        }
-        changed
-    }
-
-    /// The same for the blends between keyframe k and the one before.
-    fn straighten_way(&self, k: usize, shells: &mut [Shell]) -> bool {
-        let [from, to] = [k - 1, k].map(|k| &self.keyframes[k].positions);
-        let blends = (1..8).map(|part| blend(from, to, part as f32 / 8.0));
-        blends.filter(|positions| straighten(shells, positions)).count() > 0
-    }
-
-    /// Certifies all keyframes anew, for a surface follows them in another way.
-    fn certify_again(&mut self, complex: &Complex, shells: &[Shell]) {
-        for keyframe in &mut self.keyframes {
-            keyframe.certificate = certify(complex, shells, &keyframe.positions);
-            keyframe.way_is_clear = false;
-        }
-    }
+/// Whether a flat state is that of these positions.
+fn is_at(flat: &[Vec2], positions: &[Vec3A]) -> bool {
+    flat.iter().zip(positions).all(|(a, b)| *a == b.truncate())
 }
 
 /// Whether every blend of two keyframes is valid.
 fn is_clear(complex: &Complex, shells: &[Shell], from: &Keyframe, to: &Keyframe) -> bool {
     let [from, to] = [from, to].map(|keyframe| Placed::new(shells, keyframe.positions.clone()));
     certify_way(complex, shells, &from, &to).1
-}
-
-/// Straightens what flat surfaces need in a state; whether that changed any.
-fn straighten(shells: &mut [Shell], positions: &[Vec3A]) -> bool {
-    shells.iter_mut().map(|shell| shell.straighten(positions)).filter(|&changed| changed).count() > 0
 }
 
 /// A keyframe half-way between two, guarded from the first of them.
@@ -242,7 +257,7 @@ mod tests {
         };
         film.push(keyframe(0.0, complex.rest.clone(), true));
         if passes {
-            film.pass(moved(Vec3A::new(2.5, 3.0, 0.0)));
+            film.pass(&moved(Vec3A::new(2.5, 3.0, 0.0)));
         }
         film.push(keyframe(0.5, last.clone(), false));
         // A way that is clear only as long as the keyframe before stays where it is.

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use glam::Vec3A;
 
-use super::{Film, Keyframe, is_clear, straighten};
+use super::{Film, Keyframe, is_clear};
 use crate::{
     certificate::{Certificate, certify, certify_rest, certify_way},
     collision::{
@@ -57,11 +57,10 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         if growing.0.done() {
             continue;
         }
-        // In the plane parts flow far between two keyframes, further than straight ways lead: kept are the ends of steps, and
-        // at λ = 1 the states that were corrected.
+        // In the plane parts flow far between two keyframes, further than straight ways lead.
         let is_flat = complex.dimension == Dimension::Two;
-        if is_flat && (growing.0.settled() && !growing.0.is_key() || growing.0.is_corrected()) {
-            film.pass(warped.clone());
+        if is_flat {
+            film.pass(warped);
         }
         if !growing.0.settled() {
             continue;
@@ -95,8 +94,7 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
             continue;
         }
         let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
-        while !certificate.certified() && straighten(shells, warped) {
-            film.follows_anew();
+        while !certificate.certified() && film.straighten(shells, [warped, warped]) {
             certificate = watch.time("certificate", || certify(complex, shells, warped));
         }
         if !certificate.certified() {

@@ -209,11 +209,21 @@ impl Binding {
     }
 
     /// Lets vertices follow the straight middles of edges instead of the four-point rule, in every state: see
-    /// [`Refined`]. Returns whether any did not.
-    pub fn straighten(&mut self, vertices: impl Iterator<Item = u32>) -> bool {
+    /// [`Refined`]. Returns the vertices that now are elsewhere in states other than rest.
+    pub fn straighten(&mut self, vertices: impl Iterator<Item = u32>) -> Vec<u32> {
         let nodes = &self.nodes;
-        // Straight or not, the rest positions are the same.
-        self.refined.straighten(vertices.flat_map(|v| nodes[v as usize]))
+        let straightened = self.refined.straighten(vertices.flat_map(|v| nodes[v as usize]));
+        if straightened.is_empty() {
+            return Vec::new();
+        }
+        let mut is_straightened = vec![false; self.rest_nodes.len()];
+        for node in straightened {
+            is_straightened[node as usize] = true;
+        }
+        let follows = |v: &usize| {
+            nodes[*v].iter().zip(&self.weights[*v]).any(|(&node, &w)| w > 0.0 && is_straightened[node as usize])
+        };
+        (0..nodes.len()).filter(follows).map(|v| v as u32).collect()
     }
 
     /// Whether vertices follow the same nodes with the same weights, for two bindings of one boundary to one complex.

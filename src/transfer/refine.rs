@@ -125,16 +125,17 @@ impl Refined {
         self.0.par_iter().with_min_len(NODES_PER_TASK).map(extreme).collect()
     }
 
-    /// Sets nodes of the halved lattice onto the straight middle of their edge, in every state. Returns whether any was not.
+    /// Sets nodes of the halved lattice onto the straight middle of their edge, in every state. Returns those that were not
+    /// there.
     ///
     /// Where all are straight, the halved lattice is carried by the complex's own elements and is as valid as they are.
-    pub(super) fn straighten(&mut self, nodes: impl Iterator<Item = u32>) -> bool {
-        let mut changed = false;
+    pub(super) fn straighten(&mut self, nodes: impl Iterator<Item = u32>) -> Vec<u32> {
+        let mut changed = Vec::new();
         for node in nodes {
             let (at, weights) = &mut self.0[node as usize];
-            if at[0] != at[1] {
-                changed |= weights[0] != 0.5;
+            if at[0] != at[1] && weights[0] != 0.5 {
                 (*at, *weights) = ([at[0], at[1], at[0], at[0]], [0.5, 0.5, 0.0, 0.0]);
+                changed.push(node);
             }
         }
         changed
