@@ -441,7 +441,7 @@ fn the_gallery_opens_one_scene_by_its_name() {
     };
     let (code, sentence) = said(&["nothing"]);
     assert!(code == Some(2) && sentence.contains("nothing"), "{sentence}");
-    let (code, sentence) = said(&["hand", "fist"]);
+    let (code, sentence) = said(&["hand", "lamp"]);
     assert!(code == Some(2) && sentence.contains("one scene at a time"), "{sentence}");
     let (code, sentence) = said(&["gallery:hand"]);
     assert!(code == Some(2) && !sentence.contains("hand"), "{sentence}");

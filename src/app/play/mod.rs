@@ -8,6 +8,7 @@ mod bench;
 mod dialog;
 mod display;
 mod document;
+mod drawn;
 #[cfg(feature = "record")]
 mod filming;
 mod keys;
