@@ -369,6 +369,29 @@ fn sabotage_one_that_is_not_interrupted_leaves_its_files() {
     assert_eq!(long_warp(false, 12), (Some(0), files, false));
 }
 
+/// At so fine a lattice it looks for the wish seldom.
+#[cfg(unix)]
+#[test]
+fn a_second_interrupt_ends_it_at_once_and_leaves_no_half_file() {
+    let folder = folder();
+    std::fs::write(folder.path().join("out.obj"), "old").unwrap();
+    let mut program = Command::new(PROGRAM);
+    let program = program.args(["warp", "bars.obj", "--base", "1.3", "--resolution", "256", "-o", "out.obj"]);
+    let program = program.current_dir(folder.path()).stderr(Stdio::piped()).stdout(Stdio::null());
+    let mut child = program.spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(lines.next().is_some(), "it says something while it works");
+    let kill = format!("kill -INT {0}; sleep 0.1; kill -INT {0}", child.id());
+    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    let start = std::time::Instant::now();
+    let rest: Vec<_> = lines.map_while(Result::ok).collect();
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    assert!(start.elapsed() < std::time::Duration::from_secs(2), "{rest:?}");
+    assert!(rest.iter().any(|line| line.contains("ended at once") || line.contains("stopped at your request")));
+    assert_eq!(std::fs::read(folder.path().join("out.obj")).unwrap(), b"old");
+    assert!(listing(folder.path()).iter().all(|name| name.starts_with("bar") || name == "out.obj"));
+}
+
 // ── other faces ──
 
 #[test]
@@ -403,6 +426,25 @@ fn help_and_version_end_with_0() {
         assert_eq!(output.status.code(), Some(0));
         assert!(text(&output.stdout).contains(expected), "{arguments}");
     }
+}
+
+#[cfg(feature = "window")]
+#[test]
+fn the_gallery_opens_one_scene_by_its_name() {
+    let folder = folder();
+    let said = |names: &[&str]| {
+        let mut program = Command::new(PROGRAM);
+        let program = program.args(["gallery", "--open"]).args(names).env("XDG_DATA_HOME", folder.path());
+        // Nothing opens here: names are looked at before the display is.
+        let output = program.env("DISPLAY", ":63").env_remove("WAYLAND_DISPLAY").output().unwrap();
+        (output.status.code(), text(&output.stderr))
+    };
+    let (code, sentence) = said(&["nothing"]);
+    assert!(code == Some(2) && sentence.contains("nothing"), "{sentence}");
+    let (code, sentence) = said(&["hand", "lamp"]);
+    assert!(code == Some(2) && sentence.contains("one scene at a time"), "{sentence}");
+    let (code, sentence) = said(&["gallery:hand"]);
+    assert!(code == Some(2) && !sentence.contains("hand"), "{sentence}");
 }
 
 #[test]

@@ -392,7 +392,7 @@ fn a_growth_plays_as_its_frames_say() {
     let lambdas = [0.0, 0.1, 0.3, 0.6, 1.0];
     let frames: Vec<_> =
         states.iter().zip(lambdas).map(|(positions, lambda)| GrowthFrame { lambda, positions }).collect();
-    export::growth(&mesh, &frames, None, 4.0, &path).unwrap();
+    export::growth(&mesh, &frames, None, 4.0, &path, &|| false).unwrap();
 
     let file = gltf::Gltf::open(&path).unwrap();
     let blob = file.blob.clone().unwrap();
@@ -450,7 +450,7 @@ fn a_growth_needs_frames_and_time() {
     let path = Path::new("never.glb");
     let frame = GrowthFrame { lambda: 0.0, positions: &mesh.positions };
     for (frames, seconds) in [(vec![], 1.0), (vec![frame], 1.0), (vec![frame; 2], 0.0), (vec![frame; 2], f32::NAN)] {
-        assert!(matches!(export::growth(&mesh, &frames, None, seconds, path), Err(Error::Input(_))));
+        assert!(matches!(export::growth(&mesh, &frames, None, seconds, path, &|| false), Err(Error::Input(_))));
     }
     assert!(!path.exists());
 }

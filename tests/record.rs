@@ -153,6 +153,35 @@ fn an_mp4_has_what_was_asked_for_and_shows_the_growth() {
     assert_eq!(shown.len(), 10);
     assert!(shown.iter().all(|frame| frame["growth"]["certified"] == true && frame["growth"]["inverted"] == 0));
     assert_eq!((&shown[0]["lambda"], &shown[9]["lambda"]), (&0.0.into(), &1.0.into()));
+    for rate in ["render_frames_per_second", "encode_frames_per_second"] {
+        assert!(told["recording"][rate].as_f64().is_some_and(|rate| rate > 0.0), "{rate}");
+    }
+}
+
+#[test]
+fn how_fast_it_was_is_said_and_a_still_may_be_as_wide_as_8k() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |order: String| {
+        let output = run(folder.path(), &order);
+        let said = text(&output.stdout);
+        match output.status.code() {
+            Some(0) => Some(said),
+            _ => {
+                assert!(text(&output.stderr).contains("Vulkan"), "{}", text(&output.stderr));
+                eprintln!("skipped: no Vulkan driver");
+                None
+            }
+        }
+    };
+    let hand = HAND.replace("--quiet", "");
+    let Some(said) = told(format!("{hand} -o film.apng")) else { return };
+    assert!(said.contains("10 frames") && said.contains("drawn at") && said.contains("frames per second"), "{said}");
+    let still = hand.replace("160x120", "7680x432");
+    assert_ne!(still, hand);
+    let said = told(format!("{still} --still 1 -o wide.png")).unwrap();
+    assert!(said.contains("drawn in") && !said.contains("per second"), "{said}");
+    let wide = picture(&folder.path().join("wide.png"));
+    assert!(wide.dimensions() == (7680, 432) && !is_blank(&wide));
 }
 
 #[test]

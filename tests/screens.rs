@@ -113,10 +113,11 @@ shot beside.png
 frames 4
 show wipe
 key f
+wait done
 frames 3
-drag 640 500 560 500 4 left
+drag 640 500 860 500 4 left
 frames 3
-expect wipe 0.385
+expect wipe 0.816
 shot wipe.png
 frames 4
 show wipe

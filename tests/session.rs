@@ -180,3 +180,37 @@ fn settings_and_subjects_replace_each_other() {
     });
     wait(&session, |s| s.phase == Phase::Done);
 }
+
+#[test]
+fn a_solver_that_breaks_off_says_so_and_takes_the_next_order() {
+    let session = Session::start().unwrap();
+    let good = hand();
+    let mut broken = (*good).clone();
+    broken.triangles[0] = [u32::MAX; 3];
+    let subject = |boundary: Arc<Boundary>| {
+        let importance = stack(&good, 2.0);
+        Subject { boundary, importance, picture: None, settings: settings(16) }
+    };
+    session.open(subject(Arc::new(broken)));
+    let failed = wait(&session, is_at_rest);
+    assert_eq!(failed.phase, Phase::Failed);
+    let sentence = failed.error.clone().unwrap();
+    assert!(sentence.contains("the solver broke off") && !sentence.contains('\n'), "{sentence}");
+    session.open(subject(good.clone()));
+    let done = wait(&session, is_at_rest);
+    assert_eq!(done.phase, Phase::Done, "{:?}", done.error);
+    assert!(done.error.is_none() && session.is_answered(&done));
+}
+
+#[test]
+fn a_snapshot_knows_which_orders_it_answers() {
+    let (session, boundary) = open(16, 2.0);
+    let done = wait(&session, is_at_rest);
+    assert!(session.is_answered(&done));
+    session.set_importance(stack(&boundary, 1.5));
+    assert!(!session.is_answered(&done), "it is of the importance before");
+    let next = wait(&session, |s| session.is_answered(s) && is_at_rest(s));
+    session.set_settings(Settings { fidelity: 0.3, ..settings(16) });
+    assert!(!session.is_answered(&next));
+    wait(&session, |s| session.is_answered(s) && is_at_rest(s));
+}

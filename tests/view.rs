@@ -16,8 +16,8 @@ use homunculus::{
     boundary::Boundary,
     film::blend,
     view::{
-        Backdrop, Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, Studio, Target, ViewFrame,
-        VoxelColour, Wipe, adapter,
+        Backdrop, Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, Studio, Target, Unhurried,
+        ViewFrame, VoxelColour, Wipe, adapter,
         headless::{Renderer, Shown},
     },
     voxel::voxelize,
@@ -281,4 +281,31 @@ fn a_ray_finds_what_is_drawn() {
     let other = Pose { blend: 0.6, ..pose.clone() };
     let moved = pick(-0.05, Some(&other), Target::Surface).expect("a hit");
     assert!(moved.rest_position.distance(hit.rest_position) > 1e-3);
+}
+
+#[test]
+fn a_body_that_comes_grown_is_never_seen_at_rest() {
+    let Some((mut renderer, _turn)) = renderer() else { return };
+    let body = tower();
+    let grown = |renderer: &mut Renderer| {
+        let shown = Shown { pose: Some(Pose::still(leaning(&body))), ..Shown::new(body.clone()) };
+        let entity = renderer.show(shown);
+        (entity, renderer.frame().expect("a frame"))
+    };
+    // Shaders and all are there when it counts.
+    let at_rest = renderer.show(Shown::new(body.clone()));
+    let resting = renderer.frame().expect("a frame");
+    renderer.world_mut().despawn(at_rest);
+    let (entity, expected) = grown(&mut renderer);
+    renderer.world_mut().despawn(entity);
+    renderer.frame().expect("a frame");
+    renderer.world_mut().init_resource::<Unhurried>();
+    let (entity, first) = grown(&mut renderer);
+    assert!(first == expected, "another state was shown first");
+    assert!(first != resting);
+    // Sabotage: what it is told later comes when it is computed, and is not waited for.
+    set(&mut renderer, entity, Pose::still(rest(&body)));
+    assert!(renderer.world_mut().get::<Pose>(entity).is_some());
+    let frames: Vec<RgbaImage> = (0..50).map(|_| renderer.frame().expect("a frame")).collect();
+    assert!(frames.last() == Some(&resting), "it comes at last");
 }

@@ -156,7 +156,7 @@ impl<'a> Drawn<'a> {
             let boundary = self.boundary.clone().with_texture(&self.picture.name, self.picture.body_png()?);
             let frames: Vec<_> =
                 self.frames.iter().map(|f| GrowthFrame { lambda: f.lambda, positions: &f.positions }).collect();
-            return export::growth(&boundary, &frames, colours, seconds, path);
+            return export::growth(&boundary, &frames, colours, seconds, path, stopped);
         }
         let states = self.states.iter().map(|(_, places)| places.as_slice());
         let canvas = Canvas::around(self.picture, &self.mesh, states, scale)?;

@@ -246,13 +246,21 @@ fn check_outputs(options: &RecordOptions, settings: &Settings, scene: &Scene) ->
 fn summary<'a>(account: &Account, written: impl Iterator<Item = &'a PathBuf>) -> String {
     let verdict = if account.certified { "certified" } else { "NOT CERTIFIED" };
     let files = written.map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
-    format!(
-        "{verdict} in {} frames; {}; drawn at {:.1}, encoded at {:.0} frames per second; written: {files}",
-        account.frames.len(),
-        human_bytes(account.bytes as f64),
-        account.render_frames_per_second,
-        account.encode_frames_per_second,
-    )
+    let bytes = human_bytes(account.bytes as f64);
+    let (drawn, encoded) = (account.render_frames_per_second, account.encode_frames_per_second);
+    match account.frames.len() {
+        1 => {
+            format!(
+                "{verdict}; {bytes}; drawn in {:.1} s, encoded in {:.1} s; written: {files}",
+                1.0 / drawn,
+                1.0 / encoded
+            )
+        }
+        frames => format!(
+            "{verdict} in {frames} frames; {bytes}; drawn at {drawn:.1}, encoded at {encoded:.0} frames per second; \
+             written: {files}"
+        ),
+    }
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {

@@ -66,7 +66,7 @@ fn write(
     if let Some(path) = &outputs.growth {
         let frames: Vec<_> =
             outcome.frames.iter().map(|f| GrowthFrame { lambda: f.lambda, positions: &f.positions }).collect();
-        export::growth(boundary, &frames, colours(Colour::Importance), seconds, path)?;
+        export::growth(boundary, &frames, colours(Colour::Importance), seconds, path, &cancel::asked)?;
         written.push(path.clone());
     }
     written.extend(outputs.write_accounts(scene, report)?);

@@ -66,4 +66,33 @@ impl Places {
         faulty.dedup();
         faulty
     }
+
+    /// The same to be marked in a drawing: of a picture with as many cells around its crossings as it takes to be seen.
+    pub fn to_be_seen(&self, complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Vec<u32> {
+        let mut faulty = self.faulty(complex, shells, positions);
+        if let Some(skin) = shells.first().filter(|_| complex.dimension == Dimension::Two) {
+            faulty.extend(around_crossings(complex, skin, positions));
+            faulty.sort_unstable();
+            faulty.dedup();
+        }
+        faulty
+    }
+}
+
+/// A mark is seen when it is as wide as one of so many cells along the longest side.
+const SEEN: u32 = 64;
+
+/// Triangles of a picture's mesh where its outline crosses itself in a state, with as many cells around as it takes to be
+/// seen.
+fn around_crossings(complex: &Complex, skin: &Shell, positions: &[Vec3A]) -> Vec<u32> {
+    let faces = skin.crossings(positions).into_iter().flat_map(|(s, t)| [s, t]);
+    let mut cells: Vec<u32> = faces.map(|face| complex.cell_of_face[face as usize]).collect();
+    for _ in 0..complex.grid.cells.max_element() / SEEN {
+        let corners = cells.iter().flat_map(|&cell| complex.corners[cell as usize]);
+        cells = corners.flat_map(|node| complex.cells_around[node as usize]).filter(|&c| c != u32::MAX).collect();
+        cells.sort_unstable();
+        cells.dedup();
+    }
+    // The halved lattice has eight triangles in each cell, cell by cell.
+    cells.into_iter().flat_map(|cell| 8 * cell..8 * cell + 8).collect()
 }

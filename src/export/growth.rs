@@ -17,6 +17,9 @@ use std::io::Write as _;
 /// The rests at both ends, as a part of the growing time.
 const HOLD: f32 = 0.25;
 
+/// Bytes that are written between two looks at whether to stop.
+const CHUNK: usize = 1 << 22;
+
 /// One certified state on the way.
 #[derive(Debug, Clone, Copy)]
 pub struct GrowthFrame<'a> {
@@ -26,7 +29,8 @@ pub struct GrowthFrame<'a> {
     pub positions: &'a [DVec3],
 }
 
-/// Writes the growth: one self-contained GLB that plays in any glTF viewer.
+/// Writes the growth: one self-contained GLB that plays in any glTF viewer. Asks `stopped` now and then, and ends when it says
+/// so.
 ///
 /// `frames`: at least two, the first at rest. `colours`: `[vertices]` linear RGB of the importance on neutral white, or `None`
 /// for the materials and colours of the input. `seconds`: how long it grows, > 0; it holds, shrinks and holds again after that.
@@ -34,13 +38,14 @@ pub struct GrowthFrame<'a> {
 /// # Errors
 ///
 /// [`Error::Input`] where there is nothing to play or a position is out of the range of single precision; [`Error::File`] where
-/// the system refuses. Nothing is left under the final name then.
+/// the system refuses; [`Error::Cancelled`] if it was stopped. Nothing is left under the final name then.
 pub fn growth(
     boundary: &Boundary,
     frames: &[GrowthFrame],
     colours: Option<&[[f32; 3]]>,
     seconds: f32,
     path: &Path,
+    stopped: &dyn Fn() -> bool,
 ) -> Result<()> {
     let [rest, grown @ ..] = frames else {
         return Err(Error::in_file(path, "a growth needs a frame at rest; record some frames first"));
@@ -63,7 +68,9 @@ pub fn growth(
         now.iter().zip(rest).flat_map(|(n, r)| (*n - *r).to_array()).collect::<Vec<f32>>()
     };
     let mut targets = Vec::with_capacity(grown.len());
+    let go_on = || if stopped() { Err(Error::Cancelled) } else { Ok(()) };
     for frame in grown {
+        go_on()?;
         let (moved, turned) = scene.moment(frame.positions);
         let positions = scene.glb.column(differences(&moved, &places), 3, true);
         let normals = scene.glb.column(differences(&turned, &normals), 3, true);
@@ -93,8 +100,18 @@ pub fn growth(
     let sampler = json!({ "input": input, "output": output, "interpolation": "LINEAR" });
     members.insert("animations".into(), json!([{ "name": "growth", "channels": channels, "samplers": [sampler] }]));
     scene.glb.root.extend(members);
+    go_on()?;
     let bytes = scene.glb.finish(path)?;
-    write_atomically(path, |file| file.write_all(&bytes))
+    let written = write_atomically(path, |file| {
+        bytes.chunks(CHUNK).try_for_each(|chunk| match stopped() {
+            true => Err(std::io::ErrorKind::Interrupted.into()),
+            false => file.write_all(chunk),
+        })
+    });
+    match written {
+        Err(_) if stopped() => Err(Error::Cancelled),
+        written => written,
+    }
 }
 
 /// Times in seconds, and all weights at each: up, hold, down, hold.

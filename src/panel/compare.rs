@@ -47,16 +47,21 @@ fn names(facts: &Facts) -> [Name; 2] {
         (text, if is_sound { theme::GREEN } else { theme::RED })
     };
     let (classic, red) = match outcome.and_then(|outcome| outcome.classic) {
-        Some(counts) => told(counts.inverted, counts.crossings),
+        Some(counts) => {
+            let (text, ink) = told(counts.inverted, counts.crossings);
+            (format!("at full growth: {text}"), ink)
+        }
         None => (String::new(), theme::RED),
     };
-    let is_certified = facts.snapshot.film.iter().all(|state| state.certificate.certified());
-    let (certified, green) = match outcome.map(|outcome| &outcome.certificate) {
-        Some(found) => {
+    let film = &facts.snapshot.film;
+    let (certified, green) = match film.iter().find(|state| !state.certificate.certified()) {
+        _ if outcome.is_none() => (String::new(), theme::AMBER),
+        None => (format!("{} in all {} keyframes", told(0, 0).0, film.len()), theme::GREEN),
+        Some(state) => {
+            let found = &state.certificate;
             let (text, _) = told(found.inverted(), found.crossings() + found.surface_crossings());
-            (text, if is_certified { theme::GREEN } else { theme::RED })
+            (format!("at λ {:.2}: {text}", state.lambda), theme::RED)
         }
-        None => (String::new(), theme::AMBER),
     };
     [
         Name { name: "linear solution alone (Eq. 1)", finding: classic, ink: red },

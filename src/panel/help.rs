@@ -24,7 +24,7 @@ const KEYS: [(&str, &[(&str, &str)]); 4] = [
             ("[  ]", "smaller, larger brush"),
             ("Ctrl + Z", "undo"),
             ("Ctrl + Shift + Z, Ctrl + Y", "redo"),
-            ("Esc", "drop the stroke; stop solving"),
+            ("Esc", "drop the stroke; stop"),
         ],
     ),
     ("Film", &[("space", "play, pause"), ("left  right", "keyframe before, next"), ("Home  End", "rest, grown")]),

@@ -93,9 +93,12 @@ fn fill(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>)
             for end in &mut choice.gradient {
                 ui.add(egui::DragValue::new(end).range(CLAMP_MIN..=CLAMP_MAX).speed(0.02).prefix("×"));
             }
+        });
+        theme::row(ui, "Along", "Fills the gradient in along an axis", |ui| {
             let [from, to] = choice.gradient;
-            for (axis, name) in [(Axis::X, "X"), (Axis::Y, "Y"), (Axis::Z, "Z")] {
-                if ui.small_button(name).on_hover_text(format!("Along {name}")).clicked() {
+            let axes = if facts.is_picture() { 2 } else { 3 };
+            for (axis, name) in [(Axis::X, "X"), (Axis::Y, "Y"), (Axis::Z, "Z")].into_iter().take(axes) {
+                if ui.button(name).clicked() {
                     wishes.push(Wish::Fill(Fill::Gradient { axis, from, to }));
                 }
             }

@@ -11,6 +11,7 @@ mod gallery;
 mod help;
 mod importance;
 mod player;
+mod prompt;
 #[cfg(feature = "record")]
 mod record;
 mod scene;
@@ -23,6 +24,7 @@ mod view;
 pub use export::{ExportChoice, MESH_FORMATS};
 pub use gallery::card_id;
 pub use player::{Easing, Player, Repeat};
+pub use prompt::Prompt;
 #[cfg(feature = "record")]
 pub use record::{FilmFacts, RecordChoice, open as open_record};
 pub use solver::Pending;
@@ -146,6 +148,8 @@ pub struct Choice {
     pub gradient: [f32; 2],
     /// A path being typed.
     pub typed_path: String,
+    /// Paths asked for in the window, where the system shows no dialog.
+    pub prompt: Option<Prompt>,
     /// Settings of the solver that are being dragged.
     pub pending: Pending,
 }
@@ -172,6 +176,7 @@ impl Default for Choice {
             fill_value: 2.0,
             gradient: [0.5, 2.0],
             typed_path: String::new(),
+            prompt: None,
             pending: Pending::default(),
         }
     }
@@ -209,6 +214,8 @@ pub enum Wish {
     OpenPath(PathBuf),
     /// Asks for a file in the system's dialog.
     Ask(Asked),
+    /// Takes files as if they had been chosen in that dialog.
+    Choose(Asked, Vec<PathBuf>),
     /// Saves the scene where it came from; asks where, if from nowhere.
     Save,
     /// Saves the scene there.
@@ -284,5 +291,6 @@ pub fn draw(root: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<
     #[cfg(feature = "record")]
     record::show(root.ctx(), facts, choice, wishes);
     help::show(root.ctx(), choice);
+    prompt::show(root.ctx(), choice, wishes);
     middle
 }

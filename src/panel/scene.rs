@@ -38,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut
         theme::row(ui, "Path", "Opens a mesh, picture, table or scene by its path", |ui| {
             let field = egui::TextEdit::singleline(&mut choice.typed_path)
                 .hint_text("type, or drop a file")
-                .desired_width(144.0);
+                .desired_width(150.0);
             let entered = ui.add(field).lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             if entered && !choice.typed_path.trim().is_empty() {
                 wishes.push(Wish::OpenPath(choice.typed_path.trim().into()));

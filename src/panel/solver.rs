@@ -71,18 +71,22 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, pending: &mut Pending, wishes: &m
             if let Some(lattice) = &facts.snapshot.lattice {
                 let domain = &lattice.summary;
                 let memory = human_bytes(memory_estimate(domain.cells as f64));
-                for (name, value) in [
+                let is_picture = facts.is_picture();
+                let cell_size = domain.cell_size;
+                let rows = [
                     ("Surface", format!("{} triangles", group(lattice.boundary.triangles.len()))),
                     ("Cells", group(domain.cells)),
                     ("Nodes", group(domain.nodes)),
                     ("Elements", group(domain.elements)),
                     (
                         "Cell size",
-                        format!("{:.4}{}", domain.cell_size, if facts.is_picture() { " pixels" } else { "" }),
+                        if is_picture { format!("{cell_size:.2} pixels") } else { format!("{cell_size:.4}") },
                     ),
                     ("Welds", format!("{} suspected", domain.suspected_welds)),
                     ("Memory", format!("about {memory}")),
-                ] {
+                ];
+                // The cells of a picture glue nothing.
+                for (name, value) in rows.into_iter().filter(|(name, _)| !(is_picture && *name == "Welds")) {
                     theme::row(ui, name, "", |ui| ui.label(value));
                 }
             }

@@ -35,7 +35,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts) {
             );
         }
         if let Some(counts) = snapshot.outcome.as_ref().and_then(|outcome| outcome.classic) {
-            theme::row(ui, "Classic", "What the edge optimization alone (Eq. 1) would leave", |ui| {
+            theme::row(ui, "Classic", "What the edge optimization alone (Eq. 1) would leave at full growth", |ui| {
                 ui.label(format!("{} inverted, {} crossings", group(counts.inverted), group(counts.crossings)));
             });
         }

@@ -11,14 +11,14 @@ pub const SIDE: f32 = 292.0;
 /// What is chosen, what can be done next.
 pub const ACCENT: Color32 = Color32::from_rgb(0x2b, 0x6c, 0xd4);
 /// Certified.
-pub const GREEN: Color32 = Color32::from_rgb(0x1f, 0x9d, 0x55);
+pub const GREEN: Color32 = Color32::from_rgb(0x16, 0x7a, 0x42);
 /// Being solved.
-pub const AMBER: Color32 = Color32::from_rgb(0xe0, 0x8e, 0x0b);
+pub const AMBER: Color32 = Color32::from_rgb(0xa8, 0x62, 0x00);
 /// Not certified, or an error.
-pub const RED: Color32 = Color32::from_rgb(0xd1, 0x3b, 0x3b);
+pub const RED: Color32 = Color32::from_rgb(0xc4, 0x2b, 0x2b);
 
-const TEXT: Color32 = Color32::from_rgb(0x24, 0x29, 0x30);
-const WEAK: Color32 = Color32::from_rgb(0x68, 0x70, 0x7b);
+const TEXT: Color32 = Color32::from_rgb(0x1a, 0x1e, 0x24);
+const WEAK: Color32 = Color32::from_rgb(0x54, 0x5c, 0x67);
 const PANEL: Color32 = Color32::from_rgb(0xf6, 0xf7, 0xf8);
 const FIELD: Color32 = Color32::from_rgb(0xff, 0xff, 0xff);
 const BUTTON: Color32 = Color32::from_rgb(0xe8, 0xea, 0xed);
@@ -51,6 +51,8 @@ pub fn apply(ctx: &Context) {
         spacing.menu_margin = Margin::same(6);
         spacing.window_margin = Margin::same(16);
         spacing.scroll = egui::style::ScrollStyle::thin();
+        // The bar beside it tells that there is more; a veil over the last line would only hide it.
+        spacing.scroll.fade.strength = 0.0;
         style.interaction.tooltip_delay = 0.4;
         style.visuals = visuals();
     });
@@ -170,6 +172,10 @@ pub fn weak(text: impl Into<String>) -> RichText {
 
 /// A button that stands for the next step.
 pub fn primary(ui: &mut Ui, text: &str) -> Response {
+    // White on a colour that fades would not be read.
+    if !ui.is_enabled() {
+        return ui.button(text);
+    }
     let text = RichText::new(text).color(Color32::WHITE);
     ui.add(egui::Button::new(text).fill(ACCENT))
 }

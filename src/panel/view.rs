@@ -32,18 +32,18 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut
             });
         }
         ui.add_space(2.0);
-        ui.horizontal(|ui| {
+        let is_picture = facts.is_picture();
+        egui::Grid::new("shown").num_columns(2).spacing(ui.spacing().item_spacing).show(ui, |ui| {
             ui.checkbox(&mut choice.ghost, "Rest shape").on_hover_text("The shape before warping, translucent");
             ui.checkbox(&mut choice.size_legend, "Sizes")
                 .on_hover_text("Cubes or discs of ×½, ×1, ×2, ×4 to compare with");
-        });
-        let is_picture = facts.is_picture();
-        if !is_picture {
-            ui.horizontal(|ui| {
+            ui.end_row();
+            if !is_picture {
                 ui.checkbox(&mut choice.turntable, "Turntable").on_hover_text("Turns by itself  (T)");
                 ui.checkbox(&mut choice.orthographic, "Parallel").on_hover_text("Parallels stay parallel");
-            });
-        }
+                ui.end_row();
+            }
+        });
         theme::row(ui, "Classic", "What the edge optimization alone (Eq. 1) gives; crossings are red", |ui| {
             let all = [
                 (Compare::Off, "off", "The certified growth alone"),
@@ -78,10 +78,16 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut
 pub(super) fn sizes(ctx: &Context, facts: &Facts, middle: egui::Rect) {
     let layer = egui::LayerId::new(egui::Order::Background, egui::Id::new("sizes"));
     let painter = ctx.layer_painter(layer).with_clip_rect(middle);
+    let mut before = egui::Rect::NOTHING;
     for (at, name) in &facts.sizes {
         let galley = painter.layout_no_wrap((*name).into(), egui::FontId::proportional(13.0), Color32::from_gray(40));
         let rect = egui::Align2::CENTER_BOTTOM.anchor_size(*at - egui::vec2(0.0, 3.0), galley.size());
-        painter.rect_filled(rect.expand2(egui::vec2(3.0, 0.0)), 3.0, Color32::from_white_alpha(170));
+        let paper = rect.expand2(egui::vec2(3.0, 0.0));
+        // Names of small shapes that stand close go one above the other.
+        let above = if paper.intersects(before) { before.top() - paper.bottom() - 1.0 } else { 0.0 };
+        let (rect, paper) = (rect.translate(egui::vec2(0.0, above)), paper.translate(egui::vec2(0.0, above)));
+        before = paper;
+        painter.rect_filled(paper, 3.0, Color32::from_white_alpha(170));
         painter.galley(rect.min, galley, Color32::BLACK);
     }
 }

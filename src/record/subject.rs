@@ -46,9 +46,6 @@ enum Shot {
     Classic(u32),
 }
 
-/// A mark is seen when it is as wide as one of so many cells along the longest side.
-const SEEN: u32 = 64;
-
 /// Vertices of a state that the camera is fitted to, about: enough that none sticks out by more than the margin.
 const FITTED: usize = 4000;
 
@@ -120,22 +117,14 @@ impl Subject {
         self.prove(Shot::Classic(lambda.to_bits()), &pose)
     }
 
-    /// Triangles of the boundary that are faulty in Eq. 1 alone at λ, rising; found once. Of a picture with as many cells
-    /// around as it takes to be seen.
+    /// Triangles of the boundary that are faulty in Eq. 1 alone at λ, rising; found once. As
+    /// many as it takes to be seen.
     pub(crate) fn classic_faults(&mut self, lambda: f32) -> Arc<Vec<u32>> {
         let pose = self.classic_pose(lambda);
         let state = blend(&pose.from, &pose.to, pose.blend);
         let places = self.places.get_or_insert_with(|| Places::new(&self.boundary, &self.complex));
         let (complex, shells) = (&self.complex, &self.shells);
-        let find = || {
-            let mut faulty = places.faulty(complex, shells, &state);
-            if let Some(skin) = shells.first().filter(|_| complex.dimension == Dimension::Two) {
-                faulty.extend(around_crossings(complex, skin, &state));
-                faulty.sort_unstable();
-                faulty.dedup();
-            }
-            Arc::new(faulty)
-        };
+        let find = || Arc::new(places.to_be_seen(complex, shells, &state));
         self.faulty.entry(lambda.to_bits()).or_insert_with(find).clone()
     }
 
@@ -174,19 +163,4 @@ impl Subject {
         let every = points.len().div_ceil(FITTED).max(1);
         points.into_iter().step_by(every).filter(|p| p.is_finite()).collect()
     }
-}
-
-/// Triangles of a picture's mesh where its outline crosses itself in a state, with as many cells around as it takes to be
-/// seen.
-fn around_crossings(complex: &Complex, skin: &Shell, state: &[Vec3A]) -> Vec<u32> {
-    let faces = skin.crossings(state).into_iter().flat_map(|(s, t)| [s, t]);
-    let mut cells: Vec<u32> = faces.map(|face| complex.cell_of_face[face as usize]).collect();
-    for _ in 0..complex.grid.cells.max_element() / SEEN {
-        let corners = cells.iter().flat_map(|&cell| complex.corners[cell as usize]);
-        cells = corners.flat_map(|node| complex.cells_around[node as usize]).filter(|&c| c != u32::MAX).collect();
-        cells.sort_unstable();
-        cells.dedup();
-    }
-    // The halved lattice has eight triangles in each cell, cell by cell.
-    cells.into_iter().flat_map(|cell| 8 * cell..8 * cell + 8).collect()
 }

@@ -42,11 +42,11 @@ pub struct Subject {
     pub settings: Settings,
 }
 
-/// What the solver is told.
+/// What the solver is told; what changes the result, with its number.
 enum Order {
     Open(Subject, u64),
-    Importance(Asking, Instant),
-    Settings(Settings),
+    Importance(Asking, Instant, u64),
+    Settings(Settings, u64),
     Cancel,
     Resume,
     Shutdown,
@@ -63,8 +63,10 @@ enum Asking {
 pub struct Session {
     orders: mpsc::Sender<Order>,
     shared: Arc<Shared>,
-    /// How many subjects it was given.
+    /// Number of the change by which it was given its subject.
     opened: AtomicU64,
+    /// How many orders that change the result.
+    changes: AtomicU64,
 }
 
 /// What both sides see.
@@ -97,28 +99,28 @@ impl Session {
             .name("solver".into())
             .spawn(move || worker::work(&inbox, &seen))
             .map_err(|e| crate::Error::Fault(format!("starting the solver's thread: {e}")))?;
-        Ok(Self { orders, shared, opened: AtomicU64::new(0) })
+        Ok(Self { orders, shared, opened: AtomicU64::new(0), changes: AtomicU64::new(0) })
     }
 
     /// Solves something else.
     pub fn open(&self, subject: Subject) {
-        let number = self.opened.fetch_add(1, Ordering::Relaxed) + 1;
-        self.order(Order::Open(subject, number));
+        self.opened.store(self.change(), Ordering::Relaxed);
+        self.order(Order::Open(subject, self.opened.load(Ordering::Relaxed)));
     }
 
     /// Goes on with another importance of the same boundary.
     pub fn set_importance(&self, importance: Arc<Stack>) {
-        self.order(Order::Importance(Asking::Surface(importance), Instant::now()));
+        self.order(Order::Importance(Asking::Surface(importance), Instant::now(), self.change()));
     }
 
     /// The same for a picture.
     pub fn set_picture(&self, picture: Arc<PaintedPicture>) {
-        self.order(Order::Importance(Asking::Picture(picture), Instant::now()));
+        self.order(Order::Importance(Asking::Picture(picture), Instant::now(), self.change()));
     }
 
     /// Solves with other settings.
     pub fn set_settings(&self, settings: Settings) {
-        self.order(Order::Settings(settings));
+        self.order(Order::Settings(settings, self.change()));
     }
 
     /// Stops solving within an iteration; what has been reached stays.
@@ -138,6 +140,16 @@ impl Session {
             return latest;
         }
         Arc::new(Snapshot { phase: Phase::Preparing, ..Snapshot::default() })
+    }
+
+    /// Whether a snapshot is of all that has been ordered.
+    pub fn is_answered(&self, snapshot: &Snapshot) -> bool {
+        snapshot.answers == self.changes.load(Ordering::Relaxed)
+    }
+
+    /// The number of the next change, from 1.
+    fn change(&self) -> u64 {
+        self.changes.fetch_add(1, Ordering::Relaxed) + 1
     }
 
     fn order(&self, order: Order) {

@@ -47,8 +47,10 @@ impl Phase {
 pub struct Snapshot {
     /// Rises with each snapshot.
     pub version: u64,
-    /// Of which subject, in the order they were given, from 1.
+    /// Of which subject: the number of the order that gave it.
     pub opened: u64,
+    /// Number of the last order that it takes into account; they rise.
+    pub answers: u64,
     /// What the solver is doing.
     pub phase: Phase,
     /// λ of the state being solved, 0..=1.

@@ -7,17 +7,20 @@ use std::{
 
 use super::{Asked, Asking, Histogram, Lattice, Linear, Order, Phase, Shared, Snapshot, State, Subject};
 use crate::{
-    Result,
+    Error, Result,
     boundary::Boundary,
-    collision::plugin::{CollisionProblem, Warped},
+    collision::{
+        Shell,
+        plugin::{CollisionProblem, Shells, Warped},
+    },
     edge::plugin::LinearSolution,
     film::plugin::Reel,
     importance::plugin::Importance,
     scene::{check_flat_resolution, check_resolution},
     schedule::{Domain, Run, Settings, domain_summary},
-    transfer::{Binding, flat_boundary, plugin::Bound},
+    transfer::{Binding, flat_boundary},
     voxel::{
-        self,
+        self, Dimension,
         plugin::{PixelShares, SuspectedWelds},
         suspected_welds, voxelize,
     },
@@ -40,14 +43,15 @@ pub(super) fn work(inbox: &mpsc::Receiver<Order>, shared: &Shared) {
             None => inbox.recv().ok(),
             Some(time) => match inbox.recv_timeout(time) {
                 Err(mpsc::RecvTimeoutError::Timeout) => {
-                    worker.advance();
+                    worker.guarded(Worker::advance);
                     continue;
                 }
                 order => order.ok(),
             },
         };
         let Some(order) = order else { return };
-        if !worker.obey(newest(order, inbox)) {
+        let orders = newest(order, inbox);
+        if worker.guarded(|worker| worker.obey(orders)) == Some(false) {
             return;
         }
     }
@@ -104,6 +108,16 @@ impl Worker<'_> {
         }
     }
 
+    /// Does something; a panic is a failure of what is being solved, and the solver waits for other orders.
+    fn guarded<R>(&mut self, work: impl FnOnce(&mut Self) -> R) -> Option<R> {
+        // What may be half-changed is given up below.
+        let done = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work(self)));
+        if done.is_err() {
+            self.note(Err(Error::Fault("the solver broke off".into())));
+        }
+        done.ok()
+    }
+
     fn publish(&mut self) {
         self.now.version += 1;
         self.published = Instant::now();
@@ -116,11 +130,17 @@ impl Worker<'_> {
             let result = match order {
                 Order::Shutdown => return false,
                 Order::Open(subject, number) => {
-                    self.now.opened = number;
+                    (self.now.opened, self.now.answers) = (number, number);
                     self.open(subject)
                 }
-                Order::Importance(asking, at) => self.set_importance(asking, Some(at)),
-                Order::Settings(settings) => self.set_settings(settings),
+                Order::Importance(asking, at, number) => {
+                    self.now.answers = number;
+                    self.set_importance(asking, Some(at))
+                }
+                Order::Settings(settings, number) => {
+                    self.now.answers = number;
+                    self.set_settings(settings)
+                }
                 Order::Cancel => {
                     self.stop();
                     Ok(())
@@ -131,6 +151,10 @@ impl Worker<'_> {
                 }
             };
             self.note(result);
+        }
+        // Who waits for an answer hears of those, too, that change nothing yet.
+        if self.shared.latest().answers != self.now.answers {
+            self.publish();
         }
         true
     }
@@ -145,8 +169,8 @@ impl Worker<'_> {
     }
 
     fn open(&mut self, subject: Subject) -> Result<()> {
-        let Snapshot { version, opened, .. } = self.now;
-        self.now = Snapshot { version, opened, phase: Phase::Preparing, ..Snapshot::default() };
+        let Snapshot { version, opened, answers, .. } = self.now;
+        self.now = Snapshot { version, opened, answers, phase: Phase::Preparing, ..Snapshot::default() };
         match subject.picture {
             Some(_) => check_flat_resolution(subject.settings.resolution)?,
             None => check_resolution(subject.settings.resolution)?,
@@ -177,7 +201,11 @@ impl Worker<'_> {
             Asking::Surface(stack) => subject.importance = stack,
             Asking::Picture(picture) => subject.picture = Some(picture),
         }
-        let (Some(Job::Solve(solve)), Some(lattice)) = (&mut self.job, &self.now.lattice) else { return Ok(()) };
+        let (Some(Job::Solve(solve)), Some(lattice)) = (&mut self.job, &self.now.lattice) else {
+            // What has failed is tried again with it; what is being prepared takes it into account.
+            let subject = subject.clone();
+            return if self.job.is_none() { self.open(subject) } else { Ok(()) };
+        };
         let (asked, linear) = solve.linear.solve(subject, &lattice.complex);
         self.now.linear = Some(Arc::new(linear.to_vec()));
         self.now.importance = Some(Arc::new(asked.importance.nodes.clone()));
@@ -294,6 +322,9 @@ impl Worker<'_> {
             self.now.size_error_p95 = Some(f64::from(progress.size_error_p95));
         }
         let has_key = self.take_film(adapting);
+        if let (true, Some(Job::Solve(solve))) = (has_key, &self.job) {
+            follow(&solve.run, &mut self.now);
+        }
         if done {
             if adapting {
                 self.grow_again();
@@ -367,12 +398,7 @@ impl Worker<'_> {
         if let Some(Reel(film)) = solve.run.get() {
             self.now.film = film.keyframes().iter().map(State::of).collect();
         }
-        // The surface of a picture may follow its nodes otherwise than at first.
-        if let (Some(Bound(binding)), Some(lattice)) = (solve.run.get(), &mut self.now.lattice)
-            && !binding.follows_as(&lattice.binding)
-        {
-            lattice.binding = binding.clone();
-        }
+        follow(&solve.run, &mut self.now);
         self.now.film_is_current = true;
         self.now.warped = self.now.film.last().map(|state| state.positions.clone());
         self.now.certificate = Some(outcome.certificate.clone());
@@ -405,6 +431,19 @@ impl State {
             positions: Arc::new(keyframe.positions.clone()),
             certificate: keyframe.certificate.clone(),
         }
+    }
+}
+
+/// The surface of a picture may follow its nodes otherwise than at first: as the keyframes found so far have to be drawn.
+fn follow(run: &Run, now: &mut Snapshot) {
+    let (Some(lattice), Some(Shells(shells))) = (&mut now.lattice, run.get()) else { return };
+    if lattice.complex.dimension != Dimension::Two {
+        return;
+    }
+    if let Some(binding) = shells.iter().find_map(Shell::binding)
+        && !binding.follows_as(&lattice.binding)
+    {
+        lattice.binding = Arc::new(binding.clone());
     }
 }
 

@@ -1,5 +1,7 @@
 //! Whether anything can be rendered, and how well.
 
+use std::sync::OnceLock;
+
 use bevy::{prelude::*, render::renderer::RenderAdapterInfo, tasks::block_on};
 
 use crate::{Error, Result};
@@ -58,6 +60,15 @@ impl Quality {
 /// # Errors
 /// [`Error::Input`] with the package that brings a driver, where there is none.
 pub fn adapter() -> Result<Adapter> {
+    /// Asking takes a tenth of a second and more; what was found stays.
+    static FOUND: OnceLock<Adapter> = OnceLock::new();
+    match FOUND.get() {
+        Some(found) => Ok(found.clone()),
+        None => look().map(|found| FOUND.get_or_init(|| found).clone()),
+    }
+}
+
+fn look() -> Result<Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::VULKAN,
         ..wgpu::InstanceDescriptor::new_without_display_handle()

@@ -37,6 +37,8 @@ pub(super) struct Canvas {
     pub rest: Arc<Vec<Vec3A>>,
     /// What is shown.
     bound: Pose,
+    /// Whether what is shown was asked for: at first it is the rest shape.
+    was_posed: bool,
     /// What will be, as soon as it is computed.
     awaited: Option<Awaited>,
     /// How many were.
@@ -97,6 +99,7 @@ impl Canvas {
             extent: state.extent,
             states: vec![state],
             bound: Pose::still(rest.clone()),
+            was_posed: false,
             awaited: None,
             shown_unhurried: 0,
             rest,
@@ -207,7 +210,7 @@ impl Canvas {
     }
 
     /// Shows a pose: finds or computes what the shaders need of it, and binds it. Unhurried, it is shown when that is
-    /// computed, and what was shown stays until then.
+    /// computed, and what was shown stays until then; a body that comes grown is shown so at once, never at rest before.
     pub fn bind(&mut self, body: &Body, wanted: &Pose, easel: &mut Easel) {
         self.states.retain(State::is_alive);
         if let Some(finished) = self.awaited.as_mut().and_then(Awaited::finished) {
@@ -221,7 +224,8 @@ impl Canvas {
         }
         if self.awaited.is_none() {
             let is_known = |state: &Arc<Vec<Vec3A>>| self.states.iter().any(|s| s.is_of(state));
-            if !easel.is_unhurried || (is_known(&wanted.from) && is_known(&wanted.to)) {
+            let is_hurried = !easel.is_unhurried || !std::mem::replace(&mut self.was_posed, true);
+            if is_hurried || (is_known(&wanted.from) && is_known(&wanted.to)) {
                 self.bound = wanted.clone();
             } else {
                 self.awaited = Some(Awaited::begin(body, self.frame, &self.surface.rows, wanted, is_known));

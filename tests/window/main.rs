@@ -4,10 +4,13 @@
 #![cfg(feature = "window")]
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
+#[cfg(unix)]
+mod beside;
 mod comparing;
 #[cfg(feature = "record")]
 mod filming;
 mod painting;
+mod panels;
 mod picture;
 mod stage;
 

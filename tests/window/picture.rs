@@ -3,20 +3,24 @@
 
 use std::path::Path;
 use std::process::Command;
+use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 use bevy::window::FileDragAndDrop;
 use glam::DVec3;
 use homunculus::app::play::Shown;
+use homunculus::certificate::Places;
+use homunculus::collision::Shell;
 use homunculus::importance::Layer;
 use homunculus::paint::{Edit, Fill};
-use homunculus::panel::{Asked, Wish};
+use homunculus::panel::{Asked, Compare, Wish};
 use homunculus::scene::{Draft, Scene, Source};
-use homunculus::session::Phase;
+use homunculus::session::{Lattice, Phase};
+use homunculus::transfer::Binding;
 use homunculus::view::{Looks, Mode};
 use image::{Rgba, RgbaImage};
 
-use super::stage::{MIDDLE, Stage};
+use super::stage::{MIDDLE, PATIENCE, Stage};
 
 impl Stage {
     /// With a picture of two halves open, its lattice there.
@@ -171,9 +175,12 @@ fn what_is_saved_and_written_is_what_the_command_line_makes_of_it() {
 #[test]
 fn regions_become_area_and_what_is_dropped_is_recognised() {
     let mut stage = Stage::open();
-    let layer = Layer::Regions { regions: stage.path("ids.png"), values: stage.path("people.csv"), per_area: true };
-    stage.wish(Wish::AddLayer(layer));
-    stage.calm();
+    // A column `value` is a statistic: it becomes area.
+    let (regions, values) = (stage.path("ids.png"), stage.path("people.csv"));
+    stage.wish(Wish::Choose(Asked::Regions, vec![regions.clone(), values.clone()]));
+    stage.wait("the layer", |s| s.open.as_ref().is_some_and(|open| !open.draft().layers.is_empty()));
+    let layer = Layer::Regions { regions, values, per_area: true };
+    assert_eq!(stage.sandbox().open.as_ref().unwrap().draft().layers, [layer]);
     stage.solved_for(1.1..3.0);
     assert_eq!(stage.sandbox().problem, None);
     stage.wish(Wish::Export(Asked::ExportReport, stage.path("report.json")));
@@ -206,4 +213,51 @@ fn regions_become_area_and_what_is_dropped_is_recognised() {
     stage.drop_file(&stage.path("ids.png"));
     stage.wait("the other picture", |s| s.open.as_ref().is_some_and(|open| open.title() == "ids.png"));
     assert!(stage.sandbox().open.as_ref().unwrap().is_picture());
+}
+
+#[test]
+fn while_it_grows_a_picture_is_drawn_as_it_will_be_written() {
+    let mut stage = Stage::empty();
+    // Its teeth grow abruptly: where it follows its nodes smoothly it turns over.
+    stage.wish(Wish::Open(Source::Gallery("crocodile".into())));
+    let (mut version, mut looked, mut smooth_is_inverted) = (0, 0, false);
+    let start = Instant::now();
+    loop {
+        stage.app.update();
+        let snapshot = stage.sandbox().snapshot.clone();
+        assert!(start.elapsed() < PATIENCE, "{:?} {:?}", snapshot.phase, snapshot.error);
+        let states = snapshot.lattice.as_ref().zip(snapshot.film.last());
+        if let Some((lattice, last)) = states.filter(|_| snapshot.version != version) {
+            let Lattice { boundary, complex, binding, .. } = lattice;
+            let inverted = |binding: Binding| Shell::boundary(boundary, binding, complex).inverted(&last.positions);
+            assert_eq!(inverted((**binding).clone()), [0; 0], "at λ {}", last.lambda);
+            // Sabotage: drawn as at first it would be.
+            smooth_is_inverted |= !inverted(Binding::new(boundary, complex)).is_empty();
+            looked += 1;
+        }
+        version = snapshot.version;
+        if snapshot.phase == Phase::Done {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(looked > 2 && smooth_is_inverted, "{looked} states");
+}
+
+#[test]
+fn crossings_of_a_picture_are_marked_as_wide_as_in_films() {
+    let mut stage = Stage::empty();
+    stage.wish(Wish::Open(Source::Gallery("magnet".into())));
+    stage.solved_for(1.1..30.0);
+    stage.sandbox().choice.compare = Compare::SideBySide;
+    stage.wait("the marks", |s| s.marked().is_some() && !s.awaits());
+    let marked = stage.sandbox().marked().unwrap();
+    let snapshot = stage.sandbox().snapshot.clone();
+    let Lattice { boundary, complex, binding, .. } = snapshot.lattice.clone().unwrap();
+    let linear = snapshot.linear.clone().unwrap();
+    let shells = [Shell::skin(&complex), Shell::boundary(&boundary, (*binding).clone(), &complex)];
+    let places = Places::new(&boundary, &complex);
+    assert_eq!(*marked, places.to_be_seen(&complex, &shells, &linear), "what a film marks");
+    let bare = places.faulty(&complex, &shells, &linear);
+    assert!(marked.len() > 4 * bare.len() && !bare.is_empty(), "{} of {}", marked.len(), bare.len());
 }

@@ -25,12 +25,13 @@ use crate::{Error, Result};
 Examples:
   homunculus gallery
   homunculus gallery --open
+  homunculus gallery --open crocodile
   homunculus gallery --render pages homunculus crocodile")]
 pub struct GalleryOptions {
     /// Which scenes [default: all]
     #[arg(value_name = "NAME")]
     pub names: Vec<String>,
-    /// Show them in the window, to choose one
+    /// Show them in the window, to choose one; of a single NAME that scene
     #[cfg(feature = "window")]
     #[arg(long)]
     pub open: bool,
@@ -51,7 +52,13 @@ pub(super) fn run(options: &GalleryOptions) -> Result<Verdict> {
     }
     #[cfg(feature = "window")]
     if options.open {
-        return super::play::choose();
+        return match (&options.names[..], &entries[..]) {
+            ([], _) => super::play::choose(),
+            (_, [entry]) => super::play::show(entry.name),
+            _ => {
+                Err(Error::input("the window shows one scene at a time; give --open one NAME, or none to choose there"))
+            }
+        };
     }
     let width = entries.iter().map(|entry| entry.name.len()).max().unwrap_or(0);
     for entry in entries {

@@ -5,10 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use bevy::prelude::*;
-use bevy::render::render_resource::PipelineCache;
-use bevy::render::{Render, RenderApp, RenderSystems};
 use serde::Serialize;
 
+use super::drawn;
 use super::present::Shown;
 use super::sandbox::Sandbox;
 use crate::app::say;
@@ -133,20 +132,9 @@ impl Bench {
     }
 }
 
-/// Tells, from the renderer, whether all that was to be drawn was.
-#[derive(Resource)]
-struct IsDrawn(Arc<AtomicBool>);
-
 /// Measures an app with a window.
-pub(super) fn build(app: &mut App, bench: Bench) {
-    if let Some(render) = app.get_sub_app_mut(RenderApp) {
-        let look = |is_drawn: Res<IsDrawn>, cache: Res<PipelineCache>| {
-            is_drawn.0.store(cache.waiting_pipelines().next().is_none(), Ordering::Relaxed);
-        };
-        render
-            .insert_resource(IsDrawn(bench.is_drawn.clone()))
-            .add_systems(Render, look.in_set(RenderSystems::Cleanup));
-    }
+pub(super) fn build(app: &mut App, mut bench: Bench) {
+    bench.is_drawn = drawn::watch(app);
     app.insert_resource(bench).add_systems(Last, measure);
 }
 

@@ -51,14 +51,15 @@ impl Filming {
     /// Checks what is wanted; the film is shot by whoever runs the second half.
     ///
     /// # Errors
-    /// As [`Settings::new`] and [`record::check`].
+    /// As [`Settings::new`] and [`Format::of`](record::encode::Format::of).
     pub(super) fn begin(order: Order, draft: &Draft) -> Result<(Self, Shooting)> {
         // A picture is looked at straight on.
         let turntable = if order.picture.is_some() { 0.0 } else { draft.turntable };
         let camera = camera(&order.seen_from);
         let settings = Settings::new(Draft { camera, turntable, still: None, ..draft.clone() })?;
         order.check()?;
-        record::check(&settings, &order.path)?;
+        // Whether this machine can is asked where the film is shot: drivers and programs take their time to answer.
+        record::encode::Format::of(&order.path, false)?;
         let shared = Arc::new(Shared::default());
         let filming = Self {
             path: order.path.clone(),
@@ -107,9 +108,8 @@ impl Shooting {
     /// # Errors
     /// As [`record::shoot`]; [`Error::Cancelled`] if it was stopped.
     pub fn run(self) -> Result<(PathBuf, bool)> {
-        let result = self.shoot();
-        self.shared.has_ended.store(true, Ordering::Relaxed);
-        result
+        let _end = End(self.shared.clone());
+        self.shoot()
     }
 
     fn shoot(&self) -> Result<(PathBuf, bool)> {
@@ -131,6 +131,15 @@ impl Shooting {
         });
         take.keep(&beside)?;
         Ok((order.path.clone(), certified))
+    }
+}
+
+/// Tells that a film has ended, however it did.
+struct End(Arc<Shared>);
+
+impl Drop for End {
+    fn drop(&mut self) {
+        self.0.has_ended.store(true, Ordering::Relaxed);
     }
 }
 

@@ -102,6 +102,10 @@ fn escape(sandbox: &mut Sandbox) {
 
 /// Whether one was open.
 fn close_dialogs(choice: &mut Choice) -> bool {
+    // It lies over the others, which stay.
+    if choice.prompt.take().is_some() {
+        return true;
+    }
     let was_open = choice.help || choice.export.is_open || choice.gallery;
     (choice.help, choice.export.is_open, choice.gallery) = (false, false, false);
     #[cfg(feature = "record")]

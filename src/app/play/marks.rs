@@ -96,6 +96,13 @@ impl Marks {
         }
     }
 
+    /// A search broke off; the next one may begin.
+    pub fn give_up(&mut self) {
+        self.is_looking = false;
+        // It would break off again.
+        self.found.iter_mut().for_each(|found| *found = Some(found.take().unwrap_or_default()));
+    }
+
     /// What to mark at λ: what was found nearest to it.
     pub fn at(&self, linear: Option<&State>, lambda: f32) -> Option<Faulty> {
         let is_known = self.linear.as_ref().zip(linear).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
@@ -114,7 +121,7 @@ impl Search {
             Arc::new(Tools { places: Places::new(&boundary, &complex), complex, binding, shells })
         });
         let state = blend(&tools.complex.rest, &linear, step as f32 / STEPS as f32);
-        let faulty = Arc::new(tools.places.faulty(&tools.complex, &tools.shells, &state));
+        let faulty = Arc::new(tools.places.to_be_seen(&tools.complex, &tools.shells, &state));
         Found { tools, linear, step, faulty }
     }
 }

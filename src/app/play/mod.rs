@@ -5,8 +5,10 @@
 //! messages. The window plugin adds panels, the viewport and the rhythm of frames.
 
 mod bench;
+mod dialog;
 mod display;
 mod document;
+mod drawn;
 #[cfg(feature = "record")]
 mod filming;
 mod keys;
@@ -86,6 +88,11 @@ pub(super) fn run(options: &PlayOptions) -> Result<Verdict> {
 /// The same with nothing open but the gallery, to choose from.
 pub(super) fn choose() -> Result<Verdict> {
     start(&PlayOptions::default(), true)
+}
+
+/// The same with a scene of the gallery open.
+pub(super) fn show(name: &str) -> Result<Verdict> {
+    start(&PlayOptions { source: Some(Source::Gallery(name.into())), ..PlayOptions::default() }, false)
 }
 
 fn start(options: &PlayOptions, gallery: bool) -> Result<Verdict> {

@@ -46,6 +46,7 @@ pub(super) fn bodies(
     classic: Query<Entity, With<Classic>>,
     mut references: Query<(Entity, &mut SizeLegend)>,
     orbits: Query<&Orbit>,
+    mut placed: Local<Option<(u64, SizeLegend)>>,
 ) {
     let Some(lattice) = &sandbox.snapshot.lattice else { return };
     let is_shown =
@@ -77,7 +78,10 @@ pub(super) fn bodies(
     if !shows_sizes {
         return;
     }
-    let wanted = references_of(&sandbox.snapshot, lattice);
+    let version = sandbox.snapshot.version;
+    let known = placed.filter(|(known, _)| *known == version).map(|(_, legend)| legend);
+    let wanted = known.unwrap_or_else(|| references_of(&sandbox.snapshot, lattice));
+    *placed = Some((version, wanted));
     match references.single_mut() {
         Ok((_, mut legend)) if !is_new => drop(legend.set_if_neq(wanted)),
         _ => drop(commands.spawn(wanted)),
@@ -291,7 +295,7 @@ pub(super) fn camera(
     let mut wanted = *orbit;
     let is_picture = sandbox.open.as_ref().is_some_and(Document::is_picture);
     wanted.orthographic = sandbox.choice.orthographic || is_picture;
-    wanted.turntable = if sandbox.choice.turntable { TURNTABLE } else { 0.0 };
+    wanted.turntable = if sandbox.choice.turntable && !is_picture { TURNTABLE } else { 0.0 };
     wanted.turn(time.delta_secs());
     if is_picture {
         // Straight on, whatever is asked for.

@@ -15,7 +15,6 @@ use crate::panel::{Asked, Choice};
 use crate::scene::Scene;
 use crate::schedule::Outcome;
 use crate::session::Snapshot;
-use crate::view::Orbit;
 use crate::{Error, Result};
 
 /// What to write, of what, where.
@@ -32,7 +31,8 @@ pub(super) struct Order {
     pub snapshot: Arc<Snapshot>,
     pub warnings: Vec<String>,
     pub choice: Choice,
-    pub seen_from: Orbit,
+    #[cfg(feature = "record")]
+    pub seen_from: crate::view::Orbit,
     /// Set when what is being written is to stop.
     pub stop: Arc<AtomicBool>,
 }
@@ -42,6 +42,7 @@ pub(super) fn write(order: &Order) -> Result<PathBuf> {
     let Order { boundary, outcome, path, .. } = order;
     let export = &order.choice.export;
     order.check()?;
+    let stopped = || order.stop.load(Ordering::Relaxed);
     let colours = importance::colours(&outcome.importance);
     let colours = |wanted: bool| wanted.then_some(colours.as_slice());
     if let Some(picture) = &order.picture
@@ -58,7 +59,6 @@ pub(super) fn write(order: &Order) -> Result<PathBuf> {
             }
             (Asked::ExportMesh, _) => return Err(Error::in_file(path, "a warped picture is written as .png")),
             (_, "gif" | "apng" | "png" | "glb") => {
-                let stopped = || order.stop.load(Ordering::Relaxed);
                 // Colours would hide the picture: the growth is the picture's own.
                 drawn.write_growth(path, scale, export.seconds, None, &stopped)?;
             }
@@ -74,7 +74,8 @@ pub(super) fn write(order: &Order) -> Result<PathBuf> {
         Asked::ExportGrowth => {
             let frames: Vec<_> =
                 outcome.frames.iter().map(|f| GrowthFrame { lambda: f.lambda, positions: &f.positions }).collect();
-            export::growth(boundary, &frames, colours(export.colour_growth), export.seconds, path)?;
+            let colours = colours(export.colour_growth);
+            export::growth(boundary, &frames, colours, export.seconds, path, &stopped)?;
         }
         Asked::ExportReport => report::write(&order.report(), path)?,
         _ => return Err(Error::in_file(path, "this program was built without what writes it")),

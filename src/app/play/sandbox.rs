@@ -1,20 +1,20 @@
 //! The sandbox without its window: what is open, what is chosen, what is solved, and how wishes come true.
 
-use std::path::{Path, PathBuf};
+mod files;
+
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::prelude::Resource;
 use glam::DVec3;
 
-use super::document::{Document, Dropped, Wanted, recognise, under};
+use super::document::{Document, Dropped, Wanted, recognise};
 use super::marks::{Faulty, Marks};
 use super::memory::{Memory, keep};
-use super::results;
 use super::tasks::{Done, Tasks};
-use crate::app::load::has_column;
 use crate::boundary::Boundary;
-use crate::importance::Layer;
+use crate::paint::Under;
 use crate::panel::{Asked, Choice, Compare, Wish};
 use crate::scene::{Draft, Source};
 use crate::session::{Session, Snapshot, Subject};
@@ -56,6 +56,12 @@ pub struct Sandbox {
     told: Option<Told>,
     kept: (u64, u64),
     failure_seen: u64,
+    /// Number of the document that is open, from 1: what was begun for another one does not concern it.
+    number: u64,
+    /// Number of the last wish for something to be opened: what was wished for before it comes too late.
+    asked: u64,
+    /// Layers are being read; wishes for others wait, as they begin with what these will have made of the scene.
+    waiting: Option<Vec<Wish>>,
 }
 
 /// A wish that only the camera can fulfil.
@@ -101,6 +107,9 @@ impl Sandbox {
             told: None,
             kept: (0, 0),
             failure_seen: 0,
+            number: 0,
+            asked: 0,
+            waiting: None,
         })
     }
 
@@ -111,7 +120,10 @@ impl Sandbox {
 
     /// Whether something is under way outside the window whose end it must notice.
     pub fn awaits(&self) -> bool {
-        !self.tasks.is_idle() || self.snapshot.phase.is_busy() || self.told_is_old()
+        !self.tasks.is_idle()
+            || self.snapshot.phase.is_busy()
+            || self.told_is_old()
+            || !self.session.is_answered(&self.snapshot)
     }
 
     fn told_is_old(&self) -> bool {
@@ -151,7 +163,7 @@ impl Sandbox {
             return;
         }
         if let Some(search) = self.marks.wanted(lattice, linear, self.choice.player.lambda()) {
-            self.tasks.start_quietly(move || Done::Marked(Box::new(search.run())));
+            self.tasks.start_quietly("the search for crossings", Done::Marked, move || Ok(Box::new(search.run())));
         }
     }
 
@@ -188,17 +200,18 @@ impl Sandbox {
 
     fn receive(&mut self, done: Done) {
         let result = match done {
-            Done::Opened(document) => document.map(|document| self.show(*document)),
-            Done::Layers(under) => under.map(|under| {
-                if let Some(open) = &mut self.open {
-                    open.warnings = under.stack.warnings().to_vec();
-                    open.painting.set_under(*under);
-                }
-            }),
-            Done::Chosen(asked, files) => self.chosen(asked, &files),
-            Done::Saved(saved) => saved.map(|(file, edition)| {
+            Done::Opened(number, document) if number == self.asked => document.map(|document| self.show(*document)),
+            Done::Opened(..) => Ok(()),
+            Done::Layers(number, under) if number == self.number => {
+                self.wishes.splice(0..0, self.waiting.take().unwrap_or_default());
+                under.map(|under| self.layered(*under))
+            }
+            // Of something that is not open any more, or not wanted any more.
+            Done::Layers(..) => Ok(()),
+            Done::Chosen(asked, chosen) => chosen.and_then(|chosen| self.chosen(asked, chosen)),
+            Done::Saved(number, saved) => saved.map(|(file, edition)| {
                 self.memory.note(&file);
-                if let Some(open) = &mut self.open {
+                if let Some(open) = self.open.as_mut().filter(|_| number == self.number) {
                     open.saved(file, edition);
                 }
             }),
@@ -219,9 +232,13 @@ impl Sandbox {
                 }
             }
             Done::Kept(done) | Done::Pictured(done) => done,
-            Done::Marked(found) => {
+            Done::Marked(Ok(found)) => {
                 self.marks.take(*found);
                 Ok(())
+            }
+            Done::Marked(Err(error)) => {
+                self.marks.give_up();
+                Err(error)
             }
         };
         if let Err(error) = result {
@@ -229,8 +246,18 @@ impl Sandbox {
         }
     }
 
+    fn layered(&mut self, under: Under) {
+        if let Some(open) = &mut self.open {
+            open.warnings = under.stack.warnings().to_vec();
+            open.painting.set_under(under);
+        }
+    }
+
     /// A scene has been read: it takes the place of what was open.
     fn show(&mut self, document: Document) {
+        self.number += 1;
+        // They were wished for what was open before.
+        self.waiting = None;
         match (&document.file, document.source()) {
             (Some(file), _) | (None, Source::File(file)) => self.memory.note(&file.clone()),
             (None, Source::Gallery(_)) => {}
@@ -250,30 +277,21 @@ impl Sandbox {
         self.looks.push(Look::Frame);
     }
 
-    fn chosen(&mut self, asked: Asked, files: &[PathBuf]) -> Result<()> {
-        match (asked, files) {
-            (_, []) => Ok(()),
-            (Asked::Open, [path, ..]) => self.fulfil(Wish::OpenPath(path.clone())),
-            (Asked::Values, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Values { path: path.clone() })),
-            (Asked::Image, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Image { path: path.clone(), range: None })),
-            (Asked::Regions, [regions, values, ..]) => {
-                // A statistic becomes area where the table says `value` and not `importance`.
-                let per_area = self.open.as_ref().is_some_and(Document::is_picture) && has_value(values)?;
-                let (regions, values) = (regions.clone(), values.clone());
-                self.fulfil(Wish::AddLayer(Layer::Regions { regions, values, per_area }))
-            }
-            (Asked::Regions, [_]) => Ok(()),
-            #[cfg(feature = "record")]
-            (Asked::ExportFilm, [path, ..]) => {
-                self.choice.record.name = path.display().to_string();
-                Ok(())
-            }
-            (Asked::SaveScene, [path, ..]) => self.fulfil(Wish::SaveTo(path.clone())),
-            (_, [path, ..]) => self.fulfil(Wish::Export(asked, path.clone())),
-        }
+    fn is_picture(&self) -> bool {
+        self.open.as_ref().is_some_and(Document::is_picture)
     }
 
     fn fulfil(&mut self, wish: Wish) -> Result<()> {
+        let is_of_layers =
+            matches!(wish, Wish::AddLayer(_) | Wish::RemoveLayer(_) | Wish::ShowLayer(..) | Wish::SetBase(_));
+        if let Some(waiting) = self.waiting.as_mut().filter(|_| is_of_layers) {
+            // Of a value that is dragged the last counts.
+            if matches!((waiting.last(), &wish), (Some(Wish::SetBase(_)), Wish::SetBase(_))) {
+                waiting.pop();
+            }
+            waiting.push(wish);
+            return Ok(());
+        }
         match wish {
             Wish::Open(source) => self.read(Wanted::Source(source)),
             Wish::OpenPath(path) => match recognise(&path, self.open.as_ref())? {
@@ -281,10 +299,11 @@ impl Sandbox {
                 Dropped::Source(path) => self.read(Wanted::Source(Source::File(path))),
                 Dropped::Layer(layer) => return self.fulfil(Wish::AddLayer(layer)),
             },
-            Wish::Ask(asked) => self.tasks.ask(asked, &self.proposed_name(asked)),
+            Wish::Ask(asked) => self.ask(asked),
+            Wish::Choose(asked, files) => self.tasks.choose(asked, files, self.is_picture()),
             Wish::Save => match self.open.as_ref().map(|open| open.file.clone()) {
                 Some(Some(file)) => return self.save(file),
-                Some(None) => self.tasks.ask(Asked::SaveScene, &self.proposed_name(Asked::SaveScene)),
+                Some(None) => self.ask(Asked::SaveScene),
                 None => {}
             },
             Wish::SaveTo(path) => return self.save(path),
@@ -346,34 +365,19 @@ impl Sandbox {
             Wanted::Scene(path) => format!("reading {}", path.display()),
             Wanted::Autosave(_) => "restoring the last session".into(),
         };
-        self.tasks.start(what, move || {
-            let document = Document::read(&wanted).map(|mut document| {
+        self.asked += 1;
+        let number = self.asked;
+        self.tasks.start(
+            what,
+            move |document| Done::Opened(number, document),
+            move || {
+                let mut document = Document::read(&wanted)?;
                 if matches!(wanted, Wanted::Autosave(_)) {
                     document.unsaved();
                 }
-                Box::new(document)
-            });
-            Done::Opened(document)
-        });
-    }
-
-    fn save(&mut self, path: PathBuf) -> Result<()> {
-        let Some(open) = &mut self.open else { return Ok(()) };
-        open.painting.end();
-        let (scene, edition) = (open.scene()?, open.edition());
-        self.tasks.start(format!("saving {}", path.display()), move || {
-            Done::Saved(scene.save(&path).map(|()| (path, edition)))
-        });
-        Ok(())
-    }
-
-    /// Reads other layers; what is painted over them stays.
-    fn layers(&mut self, what: &str, change: impl FnOnce(&mut Draft)) -> Result<()> {
-        let Some(open) = &self.open else { return Ok(()) };
-        let scene = open.with_layers(change)?;
-        let known = open.painting.under().clone();
-        self.tasks.start(what, move || Done::Layers(under(&scene, Some(&known)).map(Box::new)));
-        Ok(())
+                Ok(Box::new(document))
+            },
+        );
     }
 
     fn set(&mut self, change: impl FnOnce(&mut Draft)) -> Result<()> {
@@ -386,68 +390,10 @@ impl Sandbox {
         Ok(())
     }
 
-    fn export(&mut self, asked: Asked, path: PathBuf) -> Result<()> {
-        let order = self.order(asked, path)?;
-        self.tasks.start(format!("writing {}", order.path.display()), move || Done::Written(results::write(&order)));
-        Ok(())
-    }
-
-    /// Records a film; one at a time.
-    #[cfg(feature = "record")]
-    fn record(&mut self, path: PathBuf) -> Result<()> {
-        if let Some(filming) = &self.filming {
-            let sentence = format!("{} is being recorded; wait for its end or cancel it", filming.path.display());
-            return Err(Error::input(sentence));
-        }
-        let order = self.order(Asked::ExportFilm, path)?;
-        let (filming, shooting) = super::Filming::begin(order, &self.choice.record.draft)?;
-        (self.filming, self.filmed) = (Some(filming), None);
-        self.tasks.start_quietly(move || Done::Filmed(shooting.run()));
-        Ok(())
-    }
-
-    /// What is to be written, of all that is there now.
-    fn order(&self, asked: Asked, path: PathBuf) -> Result<results::Order> {
-        let (Some(open), Some(outcome), Some(lattice)) = (&self.open, &self.snapshot.outcome, &self.snapshot.lattice)
-        else {
-            return Err(Error::input("there is nothing to export yet; wait until the solver is done"));
-        };
-        Ok(results::Order {
-            asked,
-            path,
-            scene: open.scene()?,
-            stack: Arc::new(open.painting.stack()),
-            boundary: lattice.boundary.clone(),
-            picture: open.painting.picture(),
-            outcome: outcome.clone(),
-            snapshot: self.snapshot.clone(),
-            warnings: open.warnings.clone(),
-            choice: self.choice.clone(),
-            seen_from: self.seen_from,
-            stop: self.stop.clone(),
-        })
-    }
-
-    fn proposed_name(&self, asked: Asked) -> String {
-        let title = self.open.as_ref().map_or_else(|| "scene".into(), Document::title);
-        let stem = Path::new(&title).file_stem().map_or_else(|| title.clone(), |s| s.to_string_lossy().into_owned());
-        let is_picture = self.open.as_ref().is_some_and(Document::is_picture);
-        match asked {
-            Asked::SaveScene => format!("{stem}.ron"),
-            Asked::ExportMesh if is_picture => format!("{stem}-warped.png"),
-            Asked::ExportGrowth if is_picture => format!("{stem}-growth.{}", self.choice.export.picture_growth),
-            Asked::Regions if is_picture => "ids.png".into(),
-            Asked::ExportMesh => format!("{stem}-warped.{}", self.choice.export.format),
-            Asked::ExportGrowth => format!("{stem}-growth.glb"),
-            Asked::ExportReport => format!("{stem}-report.json"),
-            Asked::ExportFilm => format!("{stem}.mp4"),
-            Asked::Open | Asked::Values | Asked::Regions | Asked::Image => String::new(),
-        }
-    }
-
     /// Writes a picture of the window.
     pub(super) fn write_picture(&mut self, picture: image::DynamicImage, path: PathBuf) {
-        self.tasks.start_quietly(move || Done::Pictured(super::write_picture(&picture, &path).map(drop)));
+        let work = move || super::write_picture(&picture, &path).map(drop);
+        self.tasks.start_quietly("the picture of the window", Done::Pictured, work);
     }
 
     /// The program is being closed: unsaved work stays to be restored, what is saved leaves nothing behind.
@@ -477,14 +423,8 @@ impl Sandbox {
         let Some(path) = self.memory.autosave() else { return };
         self.kept = open.edition();
         let scene = open.scene();
-        self.tasks.start_quietly(move || Done::Kept(keep(&scene, &path)));
+        self.tasks.start_quietly("the copy of unsaved work", Done::Kept, move || keep(&scene, &path));
     }
-}
-
-/// Whether a table gives what regions are worth in a column `value`.
-fn has_value(table: &Path) -> Result<bool> {
-    let text = std::fs::read_to_string(table).map_err(|e| Error::reading(table, e))?;
-    Ok(has_column(&text, "value") && !has_column(&text, "importance"))
 }
 
 /// Takes a layer out; those above move down.

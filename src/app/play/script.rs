@@ -18,6 +18,8 @@
 
 use std::collections::VecDeque;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use bevy::input::ButtonState;
@@ -26,6 +28,7 @@ use bevy::input::mouse::{MouseButtonInput, MouseScrollUnit, MouseWheel};
 use bevy::prelude::*;
 use bevy::window::{CursorMoved, PrimaryWindow, WindowEvent};
 
+use super::drawn;
 use super::sandbox::Sandbox;
 use crate::app::note;
 use crate::panel::{Asked, Compare, Wish};
@@ -44,6 +47,8 @@ pub(super) struct Script {
     frames: u32,
     waiting_since: Option<Instant>,
     pointer: Vec2,
+    /// Whether the renderer waits for no shader.
+    is_drawn: Arc<AtomicBool>,
 }
 
 impl Script {
@@ -51,12 +56,14 @@ impl Script {
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::reading(path, e))?;
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
-        Ok(Self { lines: lines.map(str::to_owned).collect(), frames: 0, waiting_since: None, pointer: Vec2::ZERO })
+        let lines = lines.map(str::to_owned).collect();
+        Ok(Self { lines, frames: 0, waiting_since: None, pointer: Vec2::ZERO, is_drawn: Arc::default() })
     }
 }
 
 /// Runs a scenario in an app with a window.
-pub(super) fn build(app: &mut App, script: Script) {
+pub(super) fn build(app: &mut App, mut script: Script) {
+    script.is_drawn = drawn::watch(app);
     app.insert_resource(script)
         .insert_resource(bevy::winit::WinitSettings::continuous())
         // Before Bevy turns messages into the state of buttons and keys, as the window's own would come.
@@ -147,6 +154,8 @@ impl Stage<'_> {
             "report" => self.sandbox().wishes.push(Wish::Export(Asked::ExportReport, rest.into())),
             #[cfg(feature = "record")]
             "film" => self.film(&words, &number)?,
+            // What still lacks a shader would lack in the picture.
+            "shot" if !script.is_drawn.load(Ordering::Relaxed) => return Ok(Next::Wait),
             "shot" => self.sandbox().screenshots.push(rest.into()),
             "mode" => self.sandbox().choice.mode = mode(rest)?,
             "show" => self.show(rest)?,

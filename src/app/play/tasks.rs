@@ -1,25 +1,27 @@
 //! What takes long, on threads of its own: reading, writing, the system's dialogs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::mpsc;
 
+use super::dialog;
 use super::document::Document;
 use super::marks::Found;
+use crate::app::load::has_column;
 use crate::paint::Under;
 use crate::panel::Asked;
 use crate::{Error, Result};
 
 /// What has come of a task.
 pub(super) enum Done {
-    /// A scene was read.
-    Opened(Result<Box<Document>>),
-    /// Layers were read.
-    Layers(Result<Box<Under>>),
-    /// The dialog was closed; without files it was cancelled.
-    Chosen(Asked, Vec<PathBuf>),
-    /// The scene was saved.
-    Saved(Result<(PathBuf, (u64, u64))>),
+    /// A scene was read, for the wish of this number.
+    Opened(u64, Result<Box<Document>>),
+    /// Layers were read, for the document of this number.
+    Layers(u64, Result<Box<Under>>),
+    /// Files were chosen, or none.
+    Chosen(Asked, Result<Chosen>),
+    /// The scene of the document of this number was saved: where, and in which edition.
+    Saved(u64, Result<(PathBuf, (u64, u64))>),
     /// Something was written.
     Written(Result<PathBuf>),
     /// A film was recorded, and whether all it shows is certified.
@@ -30,132 +32,214 @@ pub(super) enum Done {
     /// A picture of the window was written.
     Pictured(Result<()>),
     /// What crosses in Eq. 1's solution was found.
-    Marked(Box<Found>),
+    Marked(Result<Box<Found>>),
+}
+
+/// What was chosen in a dialog.
+#[derive(Debug)]
+pub(super) enum Chosen {
+    /// Files; none if it was cancelled. Of tables of regions: whether their values become area.
+    Files { files: Vec<PathBuf>, per_area: bool },
+    /// The system shows none.
+    NoDialog,
+}
+
+/// Who is to know that a task runs.
+#[derive(Debug, PartialEq)]
+enum Kind {
+    /// A person: what it does.
+    Told(String),
+    /// Nobody.
+    Quiet,
+    /// The system shows one dialog at a time.
+    Dialog,
 }
 
 /// Tasks that run.
 pub(super) struct Tasks {
-    results: Mutex<mpsc::Receiver<Done>>,
-    sender: mpsc::Sender<Done>,
-    /// What the running ones do, for a person; dialogs and copies are not told of.
-    running: Vec<String>,
-    /// Whether a dialog is open: the system shows one at a time.
-    has_dialog: bool,
-    quiet: usize,
+    results: Mutex<mpsc::Receiver<(u64, Done)>>,
+    sender: mpsc::Sender<(u64, Done)>,
+    /// By the number of the task, in the order they began.
+    running: Vec<(u64, Kind)>,
+    begun: u64,
 }
 
 impl Default for Tasks {
     fn default() -> Self {
         let (sender, results) = mpsc::channel();
-        Self { results: Mutex::new(results), sender, running: Vec::new(), has_dialog: false, quiet: 0 }
+        Self { results: Mutex::new(results), sender, running: Vec::new(), begun: 0 }
+    }
+}
+
+/// The word that a task gives: it says what has come of it, and a fault where the task ends without saying anything, be it
+/// by a panic or for want of a thread.
+struct Word<T, D: FnOnce(Result<T>) -> Done> {
+    number: u64,
+    what: String,
+    done: Option<D>,
+    sender: mpsc::Sender<(u64, Done)>,
+    kind: std::marker::PhantomData<fn(T)>,
+}
+
+impl<T, D: FnOnce(Result<T>) -> Done> Word<T, D> {
+    fn give(&mut self, result: Result<T>) {
+        if let Some(done) = self.done.take() {
+            // Who has gone needs no result.
+            let _ = self.sender.send((self.number, done(result)));
+        }
+    }
+}
+
+impl<T, D: FnOnce(Result<T>) -> Done> Drop for Word<T, D> {
+    fn drop(&mut self) {
+        let sentence = format!("{} broke off", self.what);
+        self.give(Err(Error::Fault(sentence)));
     }
 }
 
 impl Tasks {
-    /// Starts a task. `what` is shown meanwhile.
-    pub fn start(&mut self, what: impl Into<String>, work: impl FnOnce() -> Done + Send + 'static) {
-        self.running.push(what.into());
-        self.spawn(work);
+    /// Starts a task. `what` is shown meanwhile; `done` makes of its result what comes back.
+    pub fn start<T: 'static>(
+        &mut self,
+        what: impl Into<String>,
+        done: impl FnOnce(Result<T>) -> Done + Send + 'static,
+        work: impl FnOnce() -> Result<T> + Send + 'static,
+    ) {
+        let what = what.into();
+        self.spawn(Kind::Told(what.clone()), what, done, work);
     }
 
-    /// Starts a task nobody needs to know of.
-    pub fn start_quietly(&mut self, work: impl FnOnce() -> Done + Send + 'static) {
-        self.quiet += 1;
-        self.spawn(work);
+    /// Starts a task nobody needs to know of, unless it breaks off.
+    pub fn start_quietly<T: 'static>(
+        &mut self,
+        what: impl Into<String>,
+        done: impl FnOnce(Result<T>) -> Done + Send + 'static,
+        work: impl FnOnce() -> Result<T> + Send + 'static,
+    ) {
+        self.spawn(Kind::Quiet, what.into(), done, work);
     }
 
-    fn spawn(&self, work: impl FnOnce() -> Done + Send + 'static) {
-        let sender = self.sender.clone();
-        // Who has gone needs no result.
-        let run = move || drop(sender.send(work()));
-        if std::thread::Builder::new().name("task".into()).spawn(run).is_err() {
-            let _ = self.sender.send(Done::Written(Err(Error::Fault("the system gives no thread".into()))));
-        }
+    fn spawn<T: 'static>(
+        &mut self,
+        kind: Kind,
+        what: String,
+        done: impl FnOnce(Result<T>) -> Done + Send + 'static,
+        work: impl FnOnce() -> Result<T> + Send + 'static,
+    ) {
+        self.begun += 1;
+        self.running.push((self.begun, kind));
+        let (number, sender) = (self.begun, self.sender.clone());
+        let mut word = Word { number, what, done: Some(done), sender, kind: std::marker::PhantomData };
+        let run = move || {
+            let result = work();
+            word.give(result);
+        };
+        // Where there is no thread the word is dropped, which says so.
+        let _ = std::thread::Builder::new().name("task".into()).spawn(run);
     }
 
     /// Opens the system's dialog, unless one is open.
-    pub fn ask(&mut self, asked: Asked, proposed: &str) {
-        if std::mem::replace(&mut self.has_dialog, true) {
+    pub fn ask(&mut self, asked: Asked, proposed: &str, of_picture: bool) {
+        if self.running.iter().any(|(_, kind)| *kind == Kind::Dialog) {
             return;
         }
         let proposed = proposed.to_owned();
-        self.spawn(move || Done::Chosen(asked, choose(asked, &proposed)));
+        let work = move || match dialog::choose(asked, &proposed) {
+            Some(files) => looked_at(asked, files, of_picture),
+            None => Ok(Chosen::NoDialog),
+        };
+        self.spawn(Kind::Dialog, "the system's dialog".into(), move |chosen| Done::Chosen(asked, chosen), work);
+    }
+
+    /// Files that were chosen without a dialog.
+    pub fn choose(&mut self, asked: Asked, files: Vec<PathBuf>, of_picture: bool) {
+        let work = move || looked_at(asked, files, of_picture);
+        self.start("looking at the files", move |chosen| Done::Chosen(asked, chosen), work);
     }
 
     /// What has come since.
     pub fn take(&mut self) -> Vec<Done> {
         let results = self.results.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let done: Vec<Done> = results.try_iter().collect();
-        for result in &done {
-            match result {
-                Done::Chosen(..) => self.has_dialog = false,
-                Done::Kept(_) | Done::Pictured(_) | Done::Marked(_) => self.quiet = self.quiet.saturating_sub(1),
-                #[cfg(feature = "record")]
-                Done::Filmed(_) => self.quiet = self.quiet.saturating_sub(1),
-                // Tasks of one kind end in the order they began, near enough for a line of text.
-                Done::Opened(_) | Done::Layers(_) | Done::Saved(_) | Done::Written(_) => {
-                    if !self.running.is_empty() {
-                        self.running.remove(0);
-                    }
-                }
-            }
-        }
-        done
+        let ended: Vec<(u64, Done)> = results.try_iter().collect();
+        self.running.retain(|(number, _)| ended.iter().all(|(other, _)| other != number));
+        ended.into_iter().map(|(_, done)| done).collect()
     }
 
     /// What is being done.
     pub fn busy(&self) -> Option<&str> {
-        self.running.first().map(String::as_str)
+        self.running.iter().find_map(|(_, kind)| match kind {
+            Kind::Told(what) => Some(what.as_str()),
+            _ => None,
+        })
     }
 
-    /// Whether anything runs whose result will be looked for.
+    /// Whether nothing runs whose result will be looked for.
     pub fn is_idle(&self) -> bool {
-        self.running.is_empty() && !self.has_dialog && self.quiet == 0
+        self.running.is_empty()
     }
 }
 
-/// The system's dialog; waits for the user.
-fn choose(asked: Asked, proposed: &str) -> Vec<PathBuf> {
-    const MESHES: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "off"];
-    const PICTURES: [&str; 4] = ["png", "jpg", "jpeg", "webp"];
-    let all: Vec<&str> = MESHES.into_iter().chain(PICTURES).chain(["ron"]).collect();
-    let is_picture = PICTURES.iter().any(|extension| proposed.ends_with(extension));
-    let dialog = rfd::FileDialog::new();
-    let one = |dialog: rfd::FileDialog| dialog.pick_file().into_iter().collect();
-    let to = |dialog: rfd::FileDialog, name: &str, extensions: &[&str]| -> Vec<PathBuf> {
-        dialog.set_file_name(proposed).add_filter(name, extensions).save_file().into_iter().collect()
+/// Files, and what must be known of them before they are taken: a statistic of a picture's regions becomes area.
+fn looked_at(asked: Asked, files: Vec<PathBuf>, of_picture: bool) -> Result<Chosen> {
+    let per_area = match (asked, &files[..]) {
+        (Asked::Regions, [_, values]) if of_picture => has_value(values)?,
+        _ => false,
     };
-    match asked {
-        Asked::Open => one(dialog
-            .set_title("Open")
-            .add_filter("Everything that opens", &all)
-            .add_filter("Scenes", &["ron"])
-            .add_filter("Meshes", &MESHES)
-            .add_filter("Pictures", &PICTURES)),
-        Asked::Values => one(dialog.set_title("Importance of vertices or regions").add_filter("Table", &["csv"])),
-        Asked::Image => one(dialog.set_title("Importance as a picture").add_filter("Pictures", &PICTURES)),
-        Asked::Regions => {
-            let title = |title: &str| rfd::FileDialog::new().set_title(title);
-            let regions = if is_picture {
-                title("Which pixel belongs to which region: ids as grey values").add_filter("Pictures", &PICTURES)
-            } else {
-                title("Which vertex belongs to which region").add_filter("Table", &["csv"])
-            };
-            let Some(regions) = regions.pick_file() else { return Vec::new() };
-            let values = title("What each region is worth").add_filter("Table", &["csv"]).pick_file();
-            values.map(|values| vec![regions, values]).unwrap_or_default()
+    Ok(Chosen::Files { files, per_area })
+}
+
+/// Whether a table gives what regions are worth in a column `value` and not `importance`: a statistic.
+fn has_value(table: &Path) -> Result<bool> {
+    let text = std::fs::read_to_string(table).map_err(|e| Error::reading(table, e))?;
+    Ok(has_column(&text, "value") && !has_column(&text, "importance"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    fn ended(tasks: &mut Tasks) -> Vec<Done> {
+        let start = Instant::now();
+        let mut done = Vec::new();
+        while !tasks.is_idle() {
+            assert!(start.elapsed() < Duration::from_secs(60), "a task never ended");
+            done.extend(tasks.take());
+            std::thread::sleep(Duration::from_millis(1));
         }
-        Asked::SaveScene => to(dialog.set_title("Save the scene"), "Scene", &["ron"]),
-        Asked::ExportMesh if is_picture => to(dialog.set_title("Save the warped picture"), "Picture", &["png"]),
-        Asked::ExportGrowth if !proposed.ends_with(".glb") => {
-            to(dialog.set_title("Save the growth"), "Animation", &["gif", "apng", "glb"])
+        done
+    }
+
+    #[test]
+    fn a_task_that_panics_ends_with_a_sentence_and_the_others_go_on() {
+        let mut tasks = Tasks::default();
+        tasks.start("reading the moon", Done::Written, || panic!("on purpose"));
+        tasks.start("writing b", Done::Written, || Ok("b".into()));
+        assert_eq!(tasks.busy(), Some("reading the moon"));
+        let mut broken = 0;
+        for done in ended(&mut tasks) {
+            match done {
+                Done::Written(Ok(path)) => assert_eq!(path, PathBuf::from("b")),
+                Done::Written(Err(error)) => {
+                    assert!(error.to_string().contains("reading the moon broke off"), "{error}");
+                    broken += 1;
+                }
+                _ => panic!("what was asked for"),
+            }
         }
-        Asked::ExportMesh => to(dialog.set_title("Save the warped mesh"), "Mesh", &crate::panel::MESH_FORMATS),
-        Asked::ExportGrowth => to(dialog.set_title("Save the growth"), "glTF", &["glb"]),
-        Asked::ExportReport => to(dialog.set_title("Save the report"), "Report", &["json"]),
-        Asked::ExportFilm => {
-            let formats = ["mp4", "gif", "apng", "webm", "mov", "mkv", "webp"];
-            to(dialog.set_title("Where to record the film"), "Film", &formats)
-        }
+        assert_eq!((broken, tasks.busy()), (1, None));
+    }
+
+    #[test]
+    fn what_regions_are_worth_is_told_by_the_column() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = |text: &str| {
+            let path = folder.path().join("t.csv");
+            std::fs::write(&path, text).unwrap();
+            has_value(&path).unwrap()
+        };
+        assert!(table("region,value\n1,2\n"));
+        assert!(!table("region,importance\n1,2\n") && !table("region,value,importance\n1,2,3\n"));
+        assert!(has_value(Path::new("/nowhere/t.csv")).is_err());
     }
 }

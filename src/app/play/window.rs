@@ -35,7 +35,7 @@ pub(super) fn build(app: &mut App, size: [u32; 2], quality: Quality, unbound: bo
     app.add_plugins((
         DefaultPlugins
             .set(WindowPlugin { primary_window: Some(window), ..default() })
-            .set(LogPlugin { filter: "error,wgpu_hal=off".into(), ..default() })
+            .set(LogPlugin { filter: "error,wgpu_hal=off,rfd=off".into(), ..default() })
             .disable::<TerminalCtrlCHandlerPlugin>(),
         EguiPlugin::default(),
         WindowPluginOfPlay,
@@ -247,7 +247,7 @@ fn rhythm(
     let now = (version, sandbox.open.as_ref().map(|open| open.painting.version()));
     let moves = unhurried.is_waiting
         || sandbox.choice.player.is_playing
-        || sandbox.choice.turntable
+        || (sandbox.choice.turntable && !sandbox.open.as_ref().is_some_and(|open| open.is_picture()))
         || buttons.get_pressed().next().is_some();
     if moves || *seen != Some(now) {
         *awake = Some(Instant::now());
