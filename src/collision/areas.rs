@@ -28,7 +28,7 @@ const GOOD_ENOUGH: f64 = 0.004;
 const FAR_OFF: f64 = 0.02;
 
 /// A region's factor stays within this range and its inverse: what cannot be reached is not asked for ever louder.
-const MOST: f64 = 2.0;
+const MOST: f64 = 4.0;
 
 /// Corrections without a new best state after which it ends.
 const PATIENCE: u32 = 6;

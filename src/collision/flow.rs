@@ -20,8 +20,10 @@ use crate::{
     voxel::{Complex, Dimension, KUHN_FLAT},
 };
 
-/// A cell gains or loses at most this much at once, as `ln` of its area.
-const MOST_AT_ONCE: f32 = 0.25;
+/// A cell gains or loses at most this much at once, as `ln` of its area: about what a step of λ asks for, so that growth
+/// passes through states that are near to each other; and where regions are far from their area at λ = 1.
+pub const GROWING: f32 = 0.06;
+pub const CORRECTING: f32 = 0.5;
 
 /// How strongly φ is held at 0 along the rim, against 1 for an edge.
 const RIM: f32 = 1.0;
@@ -53,14 +55,16 @@ impl Flow {
         Self { operator: Multigrid::with_mass(complex, Weights::Unit, rim) }
     }
 
-    /// Where a flow would take the nodes: every cell nearer to the area asked for.
-    pub fn step(&mut self, complex: &Complex, asked: &Asked, positions: &[Vec3A]) -> Vec<Vec3A> {
+    /// Where a flow would take the nodes: every cell nearer to the area asked for, by at most `most` as `ln` of its area.
+    pub fn step(&mut self, complex: &Complex, asked: &Asked, positions: &[Vec3A], most: f32) -> Vec<Vec3A> {
         let cells: Vec<Cell> = complex
             .corners
             .par_iter()
             .zip(&asked.size)
             .with_min_len(CHUNK / 4)
-            .map(|(corners, &size)| Cell::of(std::array::from_fn(|k| positions[corners[k] as usize].truncate()), size))
+            .map(|(corners, &size)| {
+                Cell::of(std::array::from_fn(|k| positions[corners[k] as usize].truncate()), size, most)
+            })
             .collect();
         self.operator.reweigh(complex, |cell, corner, direction| cells[cell].weight(corner, direction));
         let around = |i: usize| {
@@ -118,11 +122,11 @@ struct Cell {
 }
 
 impl Cell {
-    fn of(at: [Vec2; 4], size: f32) -> Self {
+    fn of(at: [Vec2; 4], size: f32, most: f32) -> Self {
         let areas = ELEMENTS.map(|[a, b, c]| 0.5 * (at[b] - at[a]).perp_dot(at[c] - at[a]));
         let asked = size * size;
         let now = (areas[0] + areas[1]).max(0.01 * asked);
-        let lack = (asked / now).ln().clamp(-MOST_AT_ONCE, MOST_AT_ONCE);
+        let lack = (asked / now).ln().clamp(-most, most);
         Self { at, areas: areas.map(|area| area.max(0.005 * asked)), lack }
     }
 
@@ -179,7 +183,10 @@ mod tests {
         let mut positions = complex.rest.clone();
         let lack = |positions: &[Vec3A]| {
             let area = |corners: &[u32; 8]| -> f32 {
-                Cell::of(std::array::from_fn(|k| positions[corners[k] as usize].truncate()), 1.0).areas.iter().sum()
+                Cell::of(std::array::from_fn(|k| positions[corners[k] as usize].truncate()), 1.0, 1.0)
+                    .areas
+                    .iter()
+                    .sum()
             };
             let of_cell = |(corners, size): (&[u32; 8], &f32)| (size * size / area(corners)).ln().powi(2);
             (complex.corners.iter().zip(&asked.size).map(of_cell).sum::<f32>() / 256.0).sqrt()
@@ -187,7 +194,7 @@ mod tests {
         let before = lack(&positions);
         let mut flow = Flow::new(&complex);
         for _ in 0..12 {
-            let next = flow.step(&complex, &asked, &positions);
+            let next = flow.step(&complex, &asked, &positions, 0.25);
             positions.iter_mut().zip(next).for_each(|(p, next)| *p = p.lerp(next, part));
             for corners in &complex.corners {
                 for element in Dimension::Two.elements() {

@@ -178,12 +178,14 @@ impl Step<'_> {
     /// within another.
     fn flat_faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
         let mut marked = bad_cells(self.complex, self.size, self.current, proposed, moved);
-        let is_doubtful = |corners: &&[u32; 8]| {
-            moved.is_none_or(|moved| corners.iter().any(|&c| moved[c as usize]))
-                && !flat_cell_stays_positive([self.current, proposed].map(|p| corners.map(|c| p[c as usize])))
-        };
-        let cells = self.complex.corners.par_iter().with_min_len(CELLS_PER_TASK);
-        marked.extend(cells.filter(is_doubtful).flatten_iter().collect::<Vec<_>>());
+        if self.watch == Watch::Way {
+            let is_doubtful = |corners: &&[u32; 8]| {
+                moved.is_none_or(|moved| corners.iter().any(|&c| moved[c as usize]))
+                    && !flat_cell_stays_positive([self.current, proposed].map(|p| corners.map(|c| p[c as usize])))
+            };
+            let cells = self.complex.corners.par_iter().with_min_len(CELLS_PER_TASK);
+            marked.extend(cells.filter(is_doubtful).flatten_iter().collect::<Vec<_>>());
+        }
         for (shell, near) in self.shells.iter().zip(self.near) {
             shell.mark_unproven(near, [self.current, proposed], moved, &mut marked);
         }

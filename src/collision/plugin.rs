@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::{
     Asked, Contacts, Flow, Growth, Guarded, Placed, Problem, Shell,
     areas::{AreaCorrection, Corrected},
-    contact, contact_step, global_step, grow, guard_step, largest_motion, local_step, near_step,
+    contact, contact_step, flow, global_step, grow, guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
     diagnostics::Stopwatch,
@@ -96,7 +96,7 @@ impl Plugin for CollisionPlugin {
         app.add_systems(
             Solve,
             (
-                (start, grow_sizes, flow, leap).chain().in_set(Stage::Grow),
+                (start, grow_sizes, lead, leap).chain().in_set(Stage::Grow),
                 fit_cells.in_set(Stage::Local),
                 find_contacts.in_set(Stage::Contact),
                 propose.in_set(Stage::Global),
@@ -211,7 +211,7 @@ type Led<'a> = (
 );
 
 /// Maps begin each step of λ by a flow.
-fn flow(mut domains: Query<Led>, mut watch: ResMut<Stopwatch>) {
+fn lead(mut domains: Query<Led>, mut watch: ResMut<Stopwatch>) {
     for (Lattice(complex), mut flowing, Sizes(asked), at_risk, Growing(growth), mut shells, mut warped, reel) in
         &mut domains
     {
@@ -219,7 +219,8 @@ fn flow(mut domains: Query<Led>, mut watch: ResMut<Stopwatch>) {
             continue;
         }
         let guarded = if at_risk.0 { shells.0.len() } else { 1 };
-        let proposed = watch.time("grow", || flowing.0.step(complex, asked, &warped.0));
+        let most = if growth.at_end() { flow::CORRECTING } else { flow::GROWING };
+        let proposed = watch.time("grow", || flowing.0.step(complex, asked, &warped.0, most));
         watch.time("guard", || {
             guard_step(complex, asked, &mut shells.0[..guarded], &mut warped.0, proposed, &mut Vec::new())
         });
