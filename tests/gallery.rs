@@ -358,7 +358,7 @@ fn tables_hold_what_their_formulas_say() {
         assert!(rows.iter().all(|r| r.iter().all(|cell| !cell.trim().is_empty())), "every cell is filled, status too");
         rows.iter().map(|r| (r[1].parse().expect("a number"), r[2].parse().expect("a number"))).collect()
     };
-    let two_point = |t: f64| 3.0 * (2.5 / t).powf(5.0_f64.ln() / 18.0_f64.ln());
+    let two_point = |t: f64| 3.37 * (2.5 / t).powf(0.66);
     let density = |d: f64| 3.0 * (d / 241.0).powf(5.0_f64.ln() / (241.0_f64 / 9.0).ln());
     let off =
         |rows: &[(f64, f64)], f: &dyn Fn(f64) -> f64| rows.iter().filter(|(i, s)| (i - f(*s)).abs() > 6e-4).count();

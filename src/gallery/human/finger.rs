@@ -34,7 +34,7 @@ impl Finger {
         let t = THICKNESS[i];
         let mut at = METACARPALS[i][1];
         let mut knots = [(at, 0.0128 * t); 4];
-        let radii = [0.0116 * t, 0.0107 * t, 0.0096 * t];
+        let radii = [0.0119 * t, 0.0104 * t, 0.0088 * t];
         // A relaxed hand: each phalanx leans a little more to the palm than the one before.
         for (k, lean) in [4.0_f32, 12.0, 18.0].into_iter().enumerate() {
             let (s, c) = lean.to_radians().sin_cos();
@@ -58,7 +58,7 @@ impl Finger {
     fn through(knots: [(Vec3, f32); 4], nail: Vec3) -> Self {
         let waist = |k: usize| {
             let ((a, ra), (b, rb)) = (knots[k], knots[k + 1]);
-            (a.lerp(b, 0.5), 0.485 * (ra + rb))
+            (a.lerp(b, 0.52), 0.445 * (ra + rb))
         };
         let along = (knots[3].0 - knots[2].0).normalize();
         let flesh = [knots[0], waist(0), knots[1], waist(1), knots[2], knots[3]];
@@ -78,6 +78,13 @@ impl Finger {
         // The pad on the palm's side; the nail on the other.
         let pad = [tip - along * 0.009 - self.nail * 0.0020, tip - along * 0.001 - self.nail * 0.0016];
         f = union(f, round_cone(p, pad[0], pad[1], r * 0.97, r * 0.93), 0.006);
+        // Between the joints the flesh lies on the palm's side; on the back the bone shows, and the joints stand out.
+        for pair in k[..3].windows(2) {
+            let ((a, ra), (b, rb)) = (pair[0], pair[1]);
+            let r = 0.445 * (ra + rb);
+            let palmward = -0.0032 * self.nail.reject_from((b - a).normalize()).normalize();
+            f = union(f, round_cone(p, a.lerp(b, 0.34) + palmward, a.lerp(b, 0.70) + palmward, r, 0.94 * r), 0.006);
+        }
         let d = p - tip;
         f += nail(Vec3::new(d.dot(side), d.dot(along) + 0.15 * r, d.dot(self.nail)), r);
         for (i, (at, r)) in k.iter().enumerate().skip(1).take(2) {
