@@ -27,8 +27,9 @@ const GOOD_ENOUGH: f64 = 0.004;
 /// Root mean square error from which on a flow leads a correction; below, it would only shake what is nearly there.
 const FAR_OFF: f64 = 0.02;
 
-/// A region's factor stays within this range and its inverse: what cannot be reached is not asked for ever louder.
-const MOST: f64 = 4.0;
+/// A region's factor stays within this range and its inverse, of maps and of pictures with single parts that grow: what
+/// cannot be reached is not asked for ever louder.
+const MOST: [f64; 2] = [4.0, 2.0];
 
 /// Corrections without a new best state after which it ends.
 const PATIENCE: u32 = 6;
@@ -134,6 +135,8 @@ pub struct AreaCorrection {
     pieces: Pieces,
     /// `[regions]` what each asks for is multiplied by this, as area.
     factors: Vec<f32>,
+    /// Their range.
+    most: f64,
     rounds: u32,
     best: Option<Best>,
     finished: bool,
@@ -166,7 +169,8 @@ impl AreaCorrection {
     /// For a picture and the mesh it is drawn on.
     pub fn new(picture: &Flat, mesh: &Boundary) -> Self {
         let pieces = Pieces::new(picture, mesh);
-        Self { factors: vec![1.0; pieces.areas.len()], pieces, rounds: 0, best: None, finished: false }
+        let most = MOST[usize::from(!picture.is_map())];
+        Self { factors: vec![1.0; pieces.areas.len()], pieces, most, rounds: 0, best: None, finished: false }
     }
 
     /// What regions have of the mesh's triangles.
@@ -214,7 +218,7 @@ impl AreaCorrection {
         self.rounds += 1;
         for (factor, a) in self.factors.iter_mut().zip(&areas).filter(|(_, a)| is_resolved(a)) {
             let change = (a.asked / a.achieved.max(f64::MIN_POSITIVE)).clamp(1.0 / MOST_AT_ONCE, MOST_AT_ONCE);
-            *factor = (f64::from(*factor) * change).clamp(1.0 / MOST, MOST) as f32;
+            *factor = (f64::from(*factor) * change).clamp(1.0 / self.most, self.most) as f32;
         }
         Corrected::Ask(shares.sizes(&self.factors), error > FAR_OFF)
     }
