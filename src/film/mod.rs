@@ -183,7 +183,9 @@ impl Film {
             let way_is_clear = self.keyframes[k].way_is_clear
                 && (k == 0 || stays_sound([&self.keyframes[k - 1].positions, positions]));
             // A clear way ends in a state that is certified.
-            if !way_is_clear && !(self.keyframes[k].certificate.certified() && stays_sound([positions, positions])) {
+            let stays =
+                way_is_clear || self.keyframes[k].certificate.certified() && stays_sound([positions, positions]);
+            if !stays {
                 self.keyframes[k].certificate = certify(complex, shells, positions);
             }
             self.keyframes[k].way_is_clear = way_is_clear;

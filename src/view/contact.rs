@@ -13,8 +13,9 @@ pub(super) const SIDE: usize = 96;
 /// Half the map's side, view units: a body of height 2 with its shade.
 pub(super) const REACH: f32 = 2.6;
 
-/// Patches the surface is reduced to: more cost time, fewer show as spots under fine parts.
-const PATCHES: usize = 1500;
+/// Side of the cubes that the surface is cut into, each with its patch, view units: about a texel. Smaller cost time, larger
+/// show as spots under fine parts.
+const CUBE: f32 = 0.06;
 
 /// `[SIDE × SIDE]` x fastest, share of the sky taken, 0..=1. `positions`: `[vertices]`, view space, standing on y = 0.
 pub(super) fn shade(triangles: &[[u32; 3]], positions: &[Vec3A]) -> Vec<f32> {
@@ -46,25 +47,31 @@ pub(super) fn shade(triangles: &[[u32; 3]], positions: &[Vec3A]) -> Vec<f32> {
         .collect()
 }
 
-/// Centres and downward area vectors (n · area, turned over) of runs of triangles that look down.
+/// Centres and downward area vectors (n · area, turned over) of what looks down in each cube of space.
 fn patches(triangles: &[[u32; 3]], positions: &[Vec3A]) -> Vec<(Vec3A, Vec3A)> {
-    // Neighbours in the file are mostly neighbours on the surface; a run that is not is merely a coarser patch.
-    let run = triangles.len().div_ceil(PATCHES).max(1);
-    let patch = |triangles: &[[u32; 3]]| {
-        let (mut centre, mut downward, mut weight) = (Vec3A::ZERO, Vec3A::ZERO, 0.0);
-        for triangle in triangles {
+    let mut facing_down: Vec<([i32; 3], u32)> = triangles
+        .par_iter()
+        .enumerate()
+        .filter_map(|(t, triangle)| {
             let [a, b, c] = triangle.map(|v| positions[v as usize]);
+            let cube = ((a + b + c) / (3.0 * CUBE)).floor().as_ivec3().to_array();
+            ((b - a).cross(c - a).y < 0.0).then_some((cube, t as u32))
+        })
+        .collect();
+    facing_down.par_sort_unstable();
+    let patch = |triangle_of: &[([i32; 3], u32)]| {
+        let (mut centre, mut downward, mut weight) = (Vec3A::ZERO, Vec3A::ZERO, 0.0);
+        for &(_, t) in triangle_of {
+            let [a, b, c] = triangles[t as usize].map(|v| positions[v as usize]);
             let area = 0.5 * (b - a).cross(c - a);
-            if area.y < 0.0 {
-                let size = area.length();
-                centre += size * (a + b + c) / 3.0;
-                downward -= area;
-                weight += size;
-            }
+            let size = area.length();
+            centre += size * (a + b + c) / 3.0;
+            downward -= area;
+            weight += size;
         }
-        (weight > 0.0).then(|| (centre / weight, downward))
+        (centre / weight, downward)
     };
-    triangles.par_chunks(run).filter_map(patch).collect()
+    facing_down.chunk_by(|(a, _), (b, _)| a == b).map(patch).collect()
 }
 
 #[cfg(test)]
@@ -86,6 +93,21 @@ mod tests {
         assert!(at(SIDE / 2) > 0.2 && at(SIDE / 2) < 1.0);
         assert!(at(SIDE / 2) > at(SIDE / 2 + 12) && at(SIDE / 2 + 12) > at(SIDE - 1));
         assert!(at(SIDE - 1) < 0.02);
+        // Two feet, their triangles in turn: darkest below each, not between.
+        let feet = |x: f32| [0.3, 0.31].map(|z| [0.0, 0.02].map(|y| Vec3A::new(x + y, 0.02, z)));
+        let (mut triangles, mut positions) = (Vec::new(), Vec::new());
+        for [[a, b], [c, d]] in [feet(-0.5), feet(0.5)] {
+            let first = positions.len() as u32;
+            positions.extend([a, b, c, d]);
+            triangles.extend([[first, first + 1, first + 2], [first + 1, first + 3, first + 2]]);
+        }
+        triangles.swap(1, 2);
+        let map = shade(&triangles, &positions);
+        let at = |x: f32, z: f32| {
+            let texel = |x: f32| ((x + REACH) / (2.0 * REACH) * SIDE as f32) as usize;
+            map[texel(z) * SIDE + texel(x)]
+        };
+        assert!(at(-0.5, 0.3) > 10.0 * at(0.0, 0.3) && at(0.5, 0.3) > 10.0 * at(0.0, 0.3));
         // What looks up takes nothing.
         let (triangles, positions) = square(0.4, false);
         assert!(shade(&triangles, &positions).iter().all(|&s| s == 0.0));
