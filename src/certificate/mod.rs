@@ -88,21 +88,24 @@ impl Certificate {
 
 /// Checks a state: all elements, and all pairs of faces of the given shells (the first is the complex's skin).
 pub fn certify(complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Certificate {
-    let (elements, crossings): (_, Vec<_>) = rayon::join(
-        || elements::check(complex, positions),
-        || shells.par_iter().map(|s| s.crossings(positions)).collect(),
-    );
-    conclude(complex, shells, positions, elements, &crossings)
+    check(complex, shells, positions, |shell| shell.crossings(positions))
 }
 
 /// Checks the rest state like [`certify`]. What of a surface in space crosses at rest was found when the shell was made,
 /// and is inherited.
 pub fn certify_rest(complex: &Complex, shells: &[Shell]) -> Certificate {
-    let (elements, crossings): (_, Vec<_>) = rayon::join(
-        || elements::check(complex, &complex.rest),
-        || shells.par_iter().map(|s| s.crossings_at_rest(&complex.rest)).collect(),
-    );
-    conclude(complex, shells, &complex.rest, elements, &crossings)
+    check(complex, shells, &complex.rest, |shell| shell.crossings_at_rest(&complex.rest))
+}
+
+fn check(
+    complex: &Complex,
+    shells: &[Shell],
+    positions: &[Vec3A],
+    crossings: impl Fn(&Shell) -> Vec<(u32, u32)> + Sync + Send,
+) -> Certificate {
+    let (elements, crossings): (_, Vec<_>) =
+        rayon::join(|| elements::check(complex, positions), || shells.par_iter().map(crossings).collect());
+    conclude(complex, shells, positions, elements, &crossings)
 }
 
 /// Parts of a motion that are looked at where no proof comes out, the end left out.
@@ -118,15 +121,15 @@ pub fn certify_way(complex: &Complex, shells: &[Shell], from: &Placed, to: &Plac
         || elements::check_way(complex, from.nodes(), to.nodes(), &SAMPLES),
         || to.crossings_from(from, shells, &SAMPLES),
     );
-    let (from, to) = (from.nodes(), to.nodes());
+    let (start, end) = (from.nodes(), to.nodes());
     let (crossings, clear): (Vec<_>, Vec<bool>) = found.into_iter().unzip();
     let clear = unfolded
         && clear.into_iter().all(|clear| clear)
         && (complex.solids < 2
             || complex.dimension == Dimension::Two
-            || SAMPLES.iter().all(|&t| enclosed_solids(complex, &blend(from, to, t)).is_empty()));
-    let clear = clear && shells.iter().all(|s| s.stays_unfolded(from, to));
-    let certificate = conclude(complex, shells, to, elements, &crossings);
+            || SAMPLES.iter().all(|&t| enclosed_solids(complex, &blend(start, end, t)).is_empty()))
+        && to.stays_unfolded_from(from, shells);
+    let certificate = conclude(complex, shells, end, elements, &crossings);
     let clear = clear && certificate.certified();
     (certificate, clear)
 }

@@ -198,16 +198,9 @@ impl Shell {
             return;
         }
         let ends = [self.positions(from), self.positions(to)];
-        for (s, t) in self.surface.unproven_segments(again, [&ends[0], &ends[1]]) {
-            marked.extend(self.nodes_of_triangle(s));
-            marked.extend(self.nodes_of_triangle(t));
-        }
-        let is_doubtful = |t: &&[u32; 3]| {
-            moved.as_ref().is_none_or(|moved| t.iter().any(|&v| moved[v as usize]))
-                && !flat_stays_positive([0, 1].map(|end| t.map(|v| ends[end][v as usize])))
-        };
-        let doubtful: Vec<&[u32; 3]> = self.flat_elements.par_iter().with_min_len(2048).filter(is_doubtful).collect();
-        marked.extend(doubtful.into_iter().flatten().flat_map(|&v| self.nodes_of(v)));
+        let concerns = |t: &[u32; 3]| moved.as_ref().is_none_or(|moved| t.iter().any(|&v| moved[v as usize]));
+        let doubtful = self.doubtful_corners(again, [&ends[0], &ends[1]], concerns);
+        marked.extend(doubtful.into_iter().flat_map(|v| self.nodes_of(v)));
     }
 
     /// `[vertices]` whether one of the nodes that carry each has moved.
@@ -249,16 +242,6 @@ impl Shell {
         if self.flat_elements.is_empty() { Vec::new() } else { self.inverted_at(&self.positions(nodes)) }
     }
 
-    /// Whether the triangles of a flat surface are proven to stay positive on the straight way between two states.
-    pub fn stays_unfolded(&self, from: &[Vec3A], to: &[Vec3A]) -> bool {
-        if self.flat_elements.is_empty() {
-            return true;
-        }
-        let ends = [self.positions(from), self.positions(to)];
-        let is_proven = |t: &[u32; 3]| flat_stays_positive([0, 1].map(|end| t.map(|v| ends[end][v as usize])));
-        self.flat_elements.par_iter().with_min_len(2048).all(is_proven)
-    }
-
     /// Makes a flat surface follow the complex's own elements where it is not proven to keep from turning over and from
     /// crossing itself on the straight way between two states, although they are: four-point rules overshoot where sizes
     /// change abruptly. A state is a way that leads nowhere. Returns the vertices that follow otherwise now.
@@ -267,7 +250,8 @@ impl Shell {
             return Vec::new();
         }
         let ends = [from, to].map(|nodes| self.positions(nodes).into_owned());
-        let doubtful = self.doubtful_corners([&ends[0], &ends[1]], |_| true);
+        let ends = [&*ends[0], &*ends[1]];
+        let doubtful = self.doubtful_corners(self.surface.near_pairs(ends[0], ends[1], 0.0), ends, |_| true);
         self.binding.as_mut().map_or_else(Vec::new, |binding| binding.straighten(doubtful.into_iter()))
     }
 
@@ -278,19 +262,25 @@ impl Shell {
             return true;
         }
         let ends = [from, to].map(|nodes| self.positions(nodes));
-        self.doubtful_corners([&ends[0], &ends[1]], |t| t.iter().any(|&v| changed[v as usize])).is_empty()
+        let ends = [&*ends[0], &*ends[1]];
+        let concerns = |t: &[u32; 3]| t.iter().any(|&v| changed[v as usize]);
+        let near = self.touched(&self.surface.near_pairs(ends[0], ends[1], 0.0), Some(changed));
+        self.doubtful_corners(near, ends, concerns).is_empty()
     }
 
-    /// Corners of a flat surface's elements and lines that are not proven to stay positive and apart on a straight way of
-    /// its vertices: of those, and of pairs with one of those, that `concerns` says yes to.
-    fn doubtful_corners(&self, ends: [&[Vec3A]; 2], concerns: impl Fn(&[u32; 3]) -> bool + Sync) -> Vec<u32> {
-        let is_doubtful = |t: &&[u32; 3]| concerns(t) && !flat_stays_positive(ends.map(|at| t.map(|v| at[v as usize])));
+    /// Corners of what is not proven to stay as it should be on a straight way of a flat surface's vertices: of the elements
+    /// that `concerns` says yes to, which must stay positive, and of `pairs` of lines, which must stay apart.
+    fn doubtful_corners(
+        &self,
+        pairs: Vec<(u32, u32)>,
+        ends: [&[Vec3A]; 2],
+        concerns: impl Fn(&[u32; 3]) -> bool + Sync,
+    ) -> Vec<u32> {
+        let is_doubtful = |t: &&[u32; 3]| concerns(t) && !stays_positive(t, ends);
         let elements = self.flat_elements.par_iter().with_min_len(2048).filter(is_doubtful);
         let mut corners: Vec<u32> = elements.flatten_iter().copied().collect();
-        let mut near = self.surface.near_pairs(ends[0], ends[1], 0.0);
         let line = |s: u32| &self.surface.triangles[s as usize];
-        near.retain(|&(s, t)| concerns(line(s)) || concerns(line(t)));
-        for (s, t) in self.surface.unproven_segments(near, ends) {
+        for (s, t) in self.surface.unproven_segments(pairs, ends) {
             corners.extend(line(s).iter().chain(line(t)));
         }
         corners
@@ -372,6 +362,14 @@ impl Placed {
         self.carried[shell].as_deref().unwrap_or(&self.nodes)
     }
 
+    /// Whether the triangles of flat surfaces are proven to stay positive on the straight way here.
+    pub(crate) fn stays_unfolded_from(&self, from: &Self, shells: &[Shell]) -> bool {
+        shells.iter().enumerate().all(|(k, shell)| {
+            let ends = [from.vertices(k), self.vertices(k)];
+            shell.flat_elements.par_iter().with_min_len(2048).all(|t| stays_positive(t, ends))
+        })
+    }
+
     /// By shell: crossings of this state that were not there at rest, and whether the way to it is clear; pairs on which
     /// no proof comes out are looked at in `samples`, parts of the way.
     pub(crate) fn crossings_from(
@@ -385,6 +383,11 @@ impl Placed {
             |(k, shell): (usize, &Shell)| shell.crossings_after(nodes, [from.vertices(k), self.vertices(k)], samples);
         shells.par_iter().enumerate().map(way).collect()
     }
+}
+
+/// Whether a flat triangle is proven to stay positive on the straight way of the vertices.
+fn stays_positive(triangle: &[u32; 3], ends: [&[Vec3A]; 2]) -> bool {
+    flat_stays_positive(ends.map(|at| triangle.map(|v| at[v as usize])))
 }
 
 /// How far vertices are nudged to find triangles that touch but for rounding, in cells: some units in the last place of

@@ -6,11 +6,11 @@
 //! piecewise linear functions. The coarse operator `Pᵀ A P` (Galerkin) has the same fifteen-point pattern, because both
 //! ends of a fine edge lie in one coarse tetrahedron.
 //!
-//! In the plane rows have six entries, and every fine edge lies on one coarse edge or beside one: see [`Level::reweigh`].
+//! In the plane rows have six entries, and every fine edge lies on one coarse edge or beside one: see [`Level::coarsen`].
 //!
 //! # Practice
 //! Smoother: two damped Jacobi sweeps with Chebyshev weights, the same before and (reversed) after, so that the cycle is
-//! symmetric. Every loop gathers, none scatters: the result has the same bits for any number of threads.
+//! symmetric. Every parallel loop gathers, none scatters: the result has the same bits for any number of threads.
 
 use glam::Vec3A;
 use rayon::prelude::*;
