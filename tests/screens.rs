@@ -148,7 +148,7 @@ frames 2
 expect lambda 0
 key end
 key b
-drag 600 330 640 330 6 left
+drag 600 330 603 330 1 left
 frames 2
 expect strokes 1
 key z ctrl

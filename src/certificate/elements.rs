@@ -4,10 +4,7 @@ use glam::{DVec3, Mat3A, Vec3A};
 use rayon::prelude::*;
 
 use super::predicates::{self, orientation};
-use crate::{
-    film::blend,
-    voxel::{Complex, Dimension, KUHN},
-};
+use crate::voxel::{Complex, Dimension, KUHN};
 
 /// Cells per parallel task.
 const CELLS_PER_TASK: usize = 512;
@@ -49,38 +46,27 @@ pub(super) fn inverted_cells(complex: &Complex, positions: &[Vec3A]) -> Vec<usiz
         .collect()
 }
 
-/// Checks all elements of the state `to`, and whether they are positive all the way there; where that is not proven, in
-/// space at `samples`, parts of the way.
-pub(super) fn check_way(complex: &Complex, from: &[Vec3A], to: &[Vec3A], samples: &[f32]) -> (Check, bool) {
+/// Checks all elements of the state `to`, and whether they are proven to be positive all the way there.
+pub(super) fn check_way(complex: &Complex, from: &[Vec3A], to: &[Vec3A]) -> (Check, bool) {
     let check_cell = checker(complex.dimension);
-    let stays_positive = match complex.dimension {
-        Dimension::Two => flat_cell_stays_positive,
-        Dimension::Three => stays_positive,
-    };
-    let (check, doubtful) = cells(complex)
+    let stays_positive = cell_stays_positive(complex.dimension);
+    cells(complex)
         .map(|(cell, corners)| {
-            let check = check_cell(cell, corners, to);
-            let doubtful = !stays_positive([from, to].map(|p| corners.map(|c| p[c as usize])));
-            (check, if doubtful { vec![cell] } else { Vec::new() })
+            (check_cell(cell, corners, to), stays_positive([from, to].map(|p| corners.map(|c| p[c as usize]))))
         })
-        .reduce(
-            || (Check::NOTHING, Vec::new()),
-            |(a, mut doubtful), (b, more)| {
-                doubtful.extend(more);
-                (a.and(b), doubtful)
-            },
-        );
-    let positive = doubtful.is_empty()
-        || complex.dimension == Dimension::Three
-            && samples.iter().all(|&part| {
-                let between = blend(from, to, part);
-                doubtful.iter().all(|&cell| check_cell(cell, &complex.corners[cell], &between).inverted == 0)
-            });
-    (check, positive)
+        .reduce(|| (Check::NOTHING, true), |(a, clear), (b, also)| (a.and(b), clear && also))
 }
 
 fn cells(complex: &Complex) -> impl IndexedParallelIterator<Item = (usize, &[u32; 8])> {
     complex.corners.par_iter().enumerate().with_min_len(CELLS_PER_TASK)
+}
+
+/// What proves that all elements of a cell stay positive all the way of a straight motion.
+pub(crate) fn cell_stays_positive(dimension: Dimension) -> fn([[Vec3A; 8]; 2]) -> bool {
+    match dimension {
+        Dimension::Two => flat_cell_stays_positive,
+        Dimension::Three => stays_positive,
+    }
 }
 
 /// What checks a cell of a state.
@@ -104,7 +90,7 @@ fn check_flat_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Chec
 }
 
 /// Whether both elements of a flat cell are proven to be positive all the way of a straight motion. Never wrongly true.
-pub(crate) fn flat_cell_stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
+fn flat_cell_stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
     Dimension::Two.elements().iter().all(|&[a, b, c, _]| flat_stays_positive(ends.map(|at| [at[a], at[b], at[c]])))
 }
 
@@ -117,9 +103,8 @@ pub(crate) fn flat_stays_positive(ends: [[Vec3A; 3]; 2]) -> bool {
         [b - a, c - a]
     });
     let largest = [u, v, p, q].iter().fold(glam::DVec2::ZERO, |m, e| m.max(e.abs())).max_element();
-    let bound = 1.0e-13 * largest * largest;
     let coefficients = [u.perp_dot(v), 0.5 * (u.perp_dot(q) + p.perp_dot(v)), p.perp_dot(q)];
-    coefficients.iter().all(|&c| c > bound)
+    stays_above(1.0e-13 * largest * largest, coefficients, HALVINGS)
 }
 
 /// Bounds the rounding of an element's volume in f32, relative to the cube of its cell's largest component: some forty
@@ -224,7 +209,6 @@ fn bernstein([from, to]: [[Vec3A; 8]; 2]) -> bool {
             a.dot(b.cross(c))
         };
         let largest = start.iter().chain(&end).fold(DVec3::ZERO, |m, e| m.max(e.abs())).max_element();
-        let bound = 1.0e-13 * largest.powi(3);
         let third = |picks: [[usize; 3]; 3]| picks.map(volume).iter().sum::<f64>() / 3.0;
         let coefficients = [
             volume([0, 0, 0]),
@@ -232,6 +216,32 @@ fn bernstein([from, to]: [[Vec3A; 8]; 2]) -> bool {
             third([[1, 1, 0], [1, 0, 1], [0, 1, 1]]),
             volume([1, 1, 1]),
         ];
-        coefficients.iter().all(|&c| c > bound)
+        stays_above(1.0e-13 * largest.powi(3), coefficients, HALVINGS)
     })
+}
+
+/// Halvings of a motion at most.
+const HALVINGS: u32 = 10;
+
+/// Whether a polynomial with these Bernstein coefficients is proven to stay above a bound, in halves where it has to be
+/// (de Casteljau).
+fn stays_above<const N: usize>(bound: f64, mut coefficients: [f64; N], halvings: u32) -> bool {
+    // Both ends are values.
+    if !(coefficients[0] > bound && coefficients[N - 1] > bound) {
+        return false;
+    }
+    if coefficients.iter().all(|&c| c > bound) {
+        return true;
+    }
+    if halvings == 0 {
+        return false;
+    }
+    let mut first = coefficients;
+    for k in 1..N {
+        for j in 0..N - k {
+            coefficients[j] = 0.5 * (coefficients[j] + coefficients[j + 1]);
+        }
+        first[k] = coefficients[0];
+    }
+    stays_above(bound, first, halvings - 1) && stays_above(bound, coefficients, halvings - 1)
 }

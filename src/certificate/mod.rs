@@ -22,7 +22,7 @@ mod star;
 mod surface;
 mod tree;
 
-pub(crate) use elements::{flat_cell_stays_positive, flat_stays_positive};
+pub(crate) use elements::{cell_stays_positive, flat_stays_positive};
 pub use fidelity::{Distortion, Fidelity, RegionFidelity, distortion, fidelity, volume_ratios};
 pub use place::Places;
 pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};
@@ -34,7 +34,6 @@ use rayon::prelude::*;
 
 use crate::{
     collision::{Placed, Shell},
-    film::blend,
     voxel::{Complex, Dimension},
 };
 
@@ -108,28 +107,14 @@ fn check(
     conclude(complex, shells, positions, elements, &crossings)
 }
 
-/// Parts of a motion that are looked at where no proof comes out, the end left out.
-const SAMPLES: [f32; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
-
-/// Checks a state like [`certify`], and the straight way to it from a valid one: whether every blend of the two is valid.
-///
-/// Blends are proven at every instant: in space, elements and pairs of faces on which no proof comes out are looked at,
-/// exactly, at every eighth of the way, and of bodies within each other only these parts are looked at. In the plane a way
-/// is clear where all is proven: what keeps apart on the way does not come to lie within another either.
+/// Checks a state like [`certify`], and the straight way to it from a valid one: whether every blend of the two is proven
+/// to be valid, at every instant. What keeps apart on the way does not come to lie within another either.
 pub fn certify_way(complex: &Complex, shells: &[Shell], from: &Placed, to: &Placed) -> (Certificate, bool) {
-    let ((elements, unfolded), found) = rayon::join(
-        || elements::check_way(complex, from.nodes(), to.nodes(), &SAMPLES),
-        || to.crossings_from(from, shells, &SAMPLES),
-    );
-    let (start, end) = (from.nodes(), to.nodes());
+    let ((elements, unfolded), found) =
+        rayon::join(|| elements::check_way(complex, from.nodes(), to.nodes()), || to.crossings_from(from, shells));
     let (crossings, clear): (Vec<_>, Vec<bool>) = found.into_iter().unzip();
-    let clear = unfolded
-        && clear.into_iter().all(|clear| clear)
-        && (complex.solids < 2
-            || complex.dimension == Dimension::Two
-            || SAMPLES.iter().all(|&t| enclosed_solids(complex, &blend(start, end, t)).is_empty()))
-        && to.stays_unfolded_from(from, shells);
-    let certificate = conclude(complex, shells, end, elements, &crossings);
+    let clear = unfolded && clear.into_iter().all(|clear| clear) && to.stays_unfolded_from(from, shells);
+    let certificate = conclude(complex, shells, to.nodes(), elements, &crossings);
     let clear = clear && certificate.certified();
     (certificate, clear)
 }

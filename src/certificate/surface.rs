@@ -79,7 +79,15 @@ pub struct Surface {
     /// Over the couples.
     tree: Tree,
     stars: Stars,
+    /// `[triangles]` whether one is without area at rest: it has no side that anything could be proven to be on.
+    thin: Vec<bool>,
 }
+
+/// Triangles not wider than this part of their length, at rest, are without area: positions are rounded to f32.
+const THIN: f32 = 1.0e-5;
+
+/// Where on a way pairs with a triangle without area are looked at.
+const LOOKS: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 
 impl Surface {
     /// A surface whose corners are what their indices say.
@@ -98,8 +106,9 @@ impl Surface {
         let couples = couples(&triangles, &identities, rest);
         let centre = |t: u32| triangles[t as usize].map(|v| rest[v as usize]).iter().sum::<Vec3A>() / 3.0;
         let centres: Vec<Vec3A> = couples.iter().map(|&[s, t]| 0.5 * (centre(s) + centre(t))).collect();
+        let thin = triangles.iter().map(|t| is_thin(t.map(|v| rest[v as usize]))).collect();
         let (dimension, stars) = (Dimension::Three, Stars::new(&identities));
-        Self { dimension, tree: Tree::new(&centres), couples, stars, triangles, identities }
+        Self { dimension, tree: Tree::new(&centres), couples, stars, thin, triangles, identities }
     }
 
     /// Pairs of triangles whose boxes meet where each corner is anywhere between its places in `a` and `b`.
@@ -165,14 +174,18 @@ impl Surface {
         }
         let proven = self.stars.proven(&self.triangles, ends);
         let bounds = |corners: &[u32; 3]| ends.map(|p| Bounds::of(corners.map(|v| p[v as usize])));
-        self.pairs(bounds, |s, t| {
-            // Without branches as long as nothing is shared: each pair of boxes that meet comes by here.
-            let ([a, b, c], t_ids) = (self.identities[s as usize], self.identities[t as usize]);
-            let shares = |v: u32| t_ids.iter().fold(false, |any, &other| any | (other == v));
-            let [of_a, of_b, of_c] = [a, b, c].map(shares);
-            let is_proven = |shared: bool, v: u32| shared && proven[v as usize];
-            !((of_a | of_b | of_c) && (is_proven(of_a, a) || is_proven(of_b, b) || is_proven(of_c, c)))
-        })
+        self.pairs(bounds, |s, t| !self.are_around(&proven, s, t))
+    }
+
+    /// Whether two triangles are around a vertex whose star is proven.
+    #[inline]
+    fn are_around(&self, proven: &[bool], s: u32, t: u32) -> bool {
+        // Without branches as long as nothing is shared: each pair of boxes that meet comes by here.
+        let ([a, b, c], t_ids) = (self.identities[s as usize], self.identities[t as usize]);
+        let shares = |v: u32| t_ids.iter().fold(false, |any, &other| any | (other == v));
+        let [of_a, of_b, of_c] = [a, b, c].map(shares);
+        let is_proven = |shared: bool, v: u32| shared && proven[v as usize];
+        (of_a | of_b | of_c) && (is_proven(of_a, a) || is_proven(of_b, b) || is_proven(of_c, c))
     }
 
     /// Whether it is of the plane.
@@ -181,14 +194,13 @@ impl Surface {
     }
 
     /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart all the way of a straight
-    /// motion of the corners. Few, where nothing crosses.
+    /// motion of the corners. Few, where nothing crosses. Those with a triangle that is without area at rest, so that
+    /// nothing can be proven of them, are looked at in eighths of the way.
     pub fn doubtful_pairs(&self, from: &[Vec3A], to: &[Vec3A]) -> Vec<(u32, u32)> {
         self.not_apart(self.unproven_pairs([from, to]), [from, to], HALVINGS)
     }
 
-    /// Of pairs of segments, those that are not proven to stay apart all the way of a straight motion of their ends.
-    pub(crate) fn unproven_segments(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
-        debug_assert_eq!(self.dimension, Dimension::Two);
+    fn unproven_segments(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
         let moving = |s: u32| {
             let [a, b, _] = self.triangles[s as usize];
             ends.map(|p| [a, b].map(|v| p[v as usize].as_dvec3().truncate()))
@@ -198,7 +210,16 @@ impl Surface {
         left.filter(|&(s, t)| !segments::stay_apart(&moving(s), &moving(t), ids(s), ids(t))).collect()
     }
 
-    /// Sorts pairs and leaves out those that some direction proves apart.
+    /// The same of given pairs.
+    pub(crate) fn doubtful_of(&self, mut pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
+        if self.dimension == Dimension::Three && pairs.len() > self.triangles.len() {
+            let proven = self.stars.proven(&self.triangles, ends);
+            pairs.retain(|&(s, t)| !self.are_around(&proven, s, t));
+        }
+        self.not_apart(pairs, ends, HALVINGS)
+    }
+
+    /// Sorts pairs and leaves out those that are proven apart.
     fn not_apart(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2], halvings: u32) -> Vec<(u32, u32)> {
         if self.dimension == Dimension::Two {
             let mut left = self.unproven_segments(pairs, ends);
@@ -221,7 +242,16 @@ impl Surface {
                         return false;
                     }
                 }
-                !stay_apart(&moving(s), &moving(t), s_ids, t_ids, halvings)
+                if stay_apart(&moving(s), &moving(t), s_ids, t_ids, halvings) {
+                    return false;
+                }
+                let is_thin = self.thin[s as usize] || self.thin[t as usize];
+                let cross_at = |part: f64| {
+                    let at = |[from, to]: Moving| [0, 1, 2].map(|k| from[k].lerp(to[k], part));
+                    let [s, t] = [(moving(s), s_ids), (moving(t), t_ids)].map(|(m, id)| Triangle { at: at(m), id });
+                    triangles_cross(&s, &t)
+                };
+                !is_thin || LOOKS.into_iter().any(cross_at)
             })
             .collect();
         left.par_sort_unstable();
@@ -292,6 +322,13 @@ impl Surface {
             .flat_map_iter(|s| (s + 1..n).filter(move |&t| self.cross(&triangle(s), &triangle(t))).map(move |t| (s, t)))
             .collect()
     }
+}
+
+fn is_thin([a, b, c]: [Vec3A; 3]) -> bool {
+    let [a, b, c] = [b - a, c - b, a - c].map(|e| e.as_dvec3());
+    let longest = a.length_squared().max(b.length_squared()).max(c.length_squared());
+    // Also where a corner is no number.
+    !(a.cross(b).length() > f64::from(THIN) * longest)
 }
 
 /// Triangles two by two, across edges that are the longest of both; those without such a neighbour are there twice.

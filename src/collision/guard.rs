@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::Shell;
 use crate::{
-    certificate::{enclosed_solids, flat_cell_stays_positive, is_positive},
+    certificate::{cell_stays_positive, enclosed_solids, is_positive},
     edge::CHUNK,
     film::blend,
     voxel::{Complex, Dimension},
@@ -43,25 +43,15 @@ pub struct Guarded {
     pub rounds: u32,
 }
 
-/// Where on the way of a step its validity is looked at. In the plane, where steps are long, the skin is proven to stay
-/// apart on all of the way in either case.
+/// Where on the way of a step it has to be valid. In the plane, where steps are long, the skin is proven to stay apart on
+/// all of the way in either case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Watch {
     /// At its end: enough for the skin, whose cells are thicker than a step is long.
     End,
-    /// On the way too: for sheets of the boundary, which may lie nearer to each other than a step is long and must not
-    /// change places unseen, and for keyframes, whose blends are shown.
+    /// Proven at every instant: for sheets of the boundary, which may lie nearer to each other than a step is long and must
+    /// not change places unseen, and for keyframes, whose blends are shown.
     Way,
-}
-
-impl Watch {
-    /// Parts of the step that are looked at in space, the last one 1.
-    pub const fn parts(self) -> &'static [f32] {
-        match self {
-            Self::End => &[1.0],
-            Self::Way => &[0.25, 0.5, 0.75, 1.0],
-        }
-    }
 }
 
 /// Makes `proposed` valid by drawing nodes back towards `current`. `size` is `[cells]`, the size asked for now.
@@ -156,37 +146,28 @@ impl Step<'_> {
         cells.filter(|(_, solid)| enclosed.contains(solid)).flat_map(|(corners, _)| *corners).collect()
     }
 
-    /// Nodes of what the step would break, of what has a node in `moved` if given.
+    /// Nodes of what the step would break, of what has a node in `moved` if given. On a way what is not proven counts as
+    /// broken; what keeps apart on all of it does not come to lie within another either.
     fn faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
-        if self.complex.dimension == Dimension::Two {
-            return self.flat_faults(proposed, moved);
-        }
-        let mut marked = Vec::new();
-        for &part in self.watch.parts() {
-            let state: Cow<'_, [Vec3A]> =
-                if part < 1.0 { Cow::Owned(blend(self.current, proposed, part)) } else { Cow::Borrowed(proposed) };
-            marked.extend(bad_cells(self.complex, self.size, self.current, &state, moved));
-            marked.extend(self.enclosed(&state));
-            for (shell, near) in self.shells.iter().zip(self.near) {
-                shell.mark_crossings(near, &state, moved, &mut marked);
-            }
-        }
-        marked
-    }
-
-    /// The same in the plane: what is not proven counts as broken. What keeps apart on all of the way does not come to lie
-    /// within another.
-    fn flat_faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
         let mut marked = bad_cells(self.complex, self.size, self.current, proposed, moved);
+        let shells = self.shells.iter().zip(self.near);
+        if self.watch == Watch::End && self.complex.dimension == Dimension::Three {
+            marked.extend(self.enclosed(proposed));
+            for (shell, near) in shells {
+                shell.mark_crossings(near, proposed, moved, &mut marked);
+            }
+            return marked;
+        }
         if self.watch == Watch::Way {
+            let stays_positive = cell_stays_positive(self.complex.dimension);
             let is_doubtful = |corners: &&[u32; 8]| {
                 moved.is_none_or(|moved| corners.iter().any(|&c| moved[c as usize]))
-                    && !flat_cell_stays_positive([self.current, proposed].map(|p| corners.map(|c| p[c as usize])))
+                    && !stays_positive([self.current, proposed].map(|p| corners.map(|c| p[c as usize])))
             };
             let cells = self.complex.corners.par_iter().with_min_len(CELLS_PER_TASK);
             marked.extend(cells.filter(is_doubtful).flatten_iter().collect::<Vec<_>>());
         }
-        for (shell, near) in self.shells.iter().zip(self.near) {
+        for (shell, near) in shells {
             shell.mark_unproven(near, [self.current, proposed], moved, &mut marked);
         }
         marked

@@ -8,7 +8,6 @@ use rayon::prelude::*;
 use crate::{
     boundary::{Boundary, Sets},
     certificate::{Surface, flat_stays_positive, is_positive},
-    film::blend,
     transfer::Binding,
     voxel::{Complex, Dimension},
 };
@@ -183,8 +182,8 @@ impl Shell {
         }
     }
 
-    /// In the plane, adds the nodes of pairs among `near` that are not proven to stay apart on the straight way between two
-    /// states, and of flat elements that are not proven to stay positive: of those that have a node in `moved` if given.
+    /// Adds the nodes of pairs among `near` that are not proven to stay apart on the straight way between two states, and of
+    /// flat elements that are not proven to stay positive: of those that have a node in `moved` if given.
     pub(super) fn mark_unproven(
         &self,
         near: &[(u32, u32)],
@@ -268,8 +267,8 @@ impl Shell {
         self.doubtful_corners(near, ends, concerns).is_empty()
     }
 
-    /// Corners of what is not proven to stay as it should be on a straight way of a flat surface's vertices: of the elements
-    /// that `concerns` says yes to, which must stay positive, and of `pairs` of lines, which must stay apart.
+    /// Corners of what is not proven to stay as it should be on a straight way of the vertices: of flat elements that
+    /// `concerns` says yes to, which must stay positive, and of `pairs`, which must stay apart.
     fn doubtful_corners(
         &self,
         pairs: Vec<(u32, u32)>,
@@ -279,9 +278,10 @@ impl Shell {
         let is_doubtful = |t: &&[u32; 3]| concerns(t) && !stays_positive(t, ends);
         let elements = self.flat_elements.par_iter().with_min_len(2048).filter(is_doubtful);
         let mut corners: Vec<u32> = elements.flatten_iter().copied().collect();
-        let line = |s: u32| &self.surface.triangles[s as usize];
-        for (s, t) in self.surface.unproven_segments(pairs, ends) {
-            corners.extend(line(s).iter().chain(line(t)));
+        let corners_of = |s: u32| &self.surface.triangles[s as usize];
+        let doubtful = self.surface.doubtful_of(pairs, ends);
+        for (s, t) in doubtful.into_iter().filter(|&pair| !self.is_inherited(pair)) {
+            corners.extend(corners_of(s).iter().chain(corners_of(t)));
         }
         corners
     }
@@ -300,28 +300,12 @@ impl Shell {
         elements.filter(|(_, t)| !is_sound(t)).map(|(t, _)| t as u32).collect()
     }
 
-    /// The same for the state at the end of a straight motion, and whether the way there is clear: proven at every
-    /// instant, but for pairs of triangles on which no proof came out; these are looked at in `samples`, parts of the way.
-    /// Both ends are given by the nodes and by this surface's vertices.
-    fn crossings_after(
-        &self,
-        [from, to]: [&[Vec3A]; 2],
-        [start, end]: [&[Vec3A]; 2],
-        samples: &[f32],
-    ) -> (Vec<(u32, u32)>, bool) {
+    /// The same for the state at the end of a straight motion of this surface's vertices, and whether it is proven that
+    /// there are none at any instant of the way.
+    fn crossings_after(&self, [start, end]: [&[Vec3A]; 2]) -> (Vec<(u32, u32)>, bool) {
         let mut doubtful = self.surface.doubtful_pairs(start, end);
         doubtful.retain(|&pair| !self.is_inherited(pair));
-        if doubtful.is_empty() {
-            return (doubtful, true);
-        }
-        let crossing = self.surface.crossing_pairs(&doubtful, end);
-        // In the plane every distance that is kept is proven.
-        let clear = !self.surface.is_flat()
-            && samples.iter().all(|&part| {
-                let between = blend(from, to, part);
-                self.surface.crossing_pairs(&doubtful, &self.positions(&between)).is_empty()
-            });
-        (crossing, clear)
+        (self.surface.crossing_pairs(&doubtful, end), doubtful.is_empty())
     }
 
     /// The nodes that carry triangle `t`: where a crossing is.
@@ -370,18 +354,11 @@ impl Placed {
         })
     }
 
-    /// By shell: crossings of this state that were not there at rest, and whether the way to it is clear; pairs on which
-    /// no proof comes out are looked at in `samples`, parts of the way.
-    pub(crate) fn crossings_from(
-        &self,
-        from: &Self,
-        shells: &[Shell],
-        samples: &[f32],
-    ) -> Vec<(Vec<(u32, u32)>, bool)> {
-        let nodes = [from, self].map(Self::nodes);
-        let way =
-            |(k, shell): (usize, &Shell)| shell.crossings_after(nodes, [from.vertices(k), self.vertices(k)], samples);
-        shells.par_iter().enumerate().map(way).collect()
+    /// By shell: crossings of this state that were not there at rest, and whether it is proven that there are none at any
+    /// instant of the straight way to it.
+    pub(crate) fn crossings_from(&self, from: &Self, shells: &[Shell]) -> Vec<(Vec<(u32, u32)>, bool)> {
+        let ends = |k: usize| [from.vertices(k), self.vertices(k)];
+        shells.par_iter().enumerate().map(|(k, shell)| shell.crossings_after(ends(k))).collect()
     }
 }
 

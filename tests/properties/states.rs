@@ -279,6 +279,37 @@ fn sabotage_bodies_that_change_places_have_no_clear_way() {
     assert!(certificate.certified() && !clear);
 }
 
+/// Two cells two apart, and where the second goes so that its edge is beside the other's from `enters` of the way on and
+/// above it from `leaves` on.
+fn passing(enters: f32, leaves: f32) -> (Complex, Vec<Vec3A>) {
+    let complex = complex(IVec3::new(3, 1, 1), |c| c.x != 1);
+    let by = Vec3A::new(-1.0 / enters, 1.0 / leaves, 0.0);
+    let moved = |(p, &body): (&Vec3A, &u32)| if body == complex.body[0] { *p } else { *p + by };
+    let to = complex.rest.iter().zip(&complex.body).map(moved).collect();
+    (complex, to)
+}
+
+#[test]
+fn an_edge_that_passes_another_is_proven_to() {
+    let (complex, to) = passing(0.92, 0.918);
+    let (certificate, clear) = way(&complex, &[Shell::skin(&complex)], &complex.rest, &to);
+    assert!(certificate.certified() && clear);
+}
+
+#[test]
+fn sabotage_an_edge_that_cuts_another_between_two_eighths_is_seen() {
+    // 0.918 to 0.92 of the way, while none of the eighths of it is at fault.
+    let (complex, to) = passing(0.918, 0.92);
+    let shells = [Shell::skin(&complex)];
+    for eighths in 0..=8_u8 {
+        let between = blend(&complex.rest, &to, f32::from(eighths) / 8.0);
+        assert!(certify(&complex, &shells, &between).certified());
+    }
+    assert!(!certify(&complex, &shells, &blend(&complex.rest, &to, 0.919)).certified());
+    let (certificate, clear) = way(&complex, &shells, &complex.rest, &to);
+    assert!(certificate.certified() && !clear);
+}
+
 #[test]
 fn a_body_is_not_swallowed_by_another() {
     let (complex, mut positions) = mote();
