@@ -79,17 +79,28 @@ impl Sampling {
     /// Samples the boundary for its complex.
     pub fn new(boundary: &Boundary, complex: &Complex) -> Self {
         let index = CellIndex::new(complex);
+        // Each vertex is sampled once, by the first of its triangles: most samples of a fine mesh are vertices.
+        let mut first_of_vertex = vec![u32::MAX; boundary.positions.len()];
+        for (t, corners) in boundary.triangles.iter().enumerate().rev() {
+            for &v in corners {
+                first_of_vertex[v as usize] = t as u32;
+            }
+        }
         let found: Vec<Vec<Placed>> = (0..boundary.triangles.len())
             .into_par_iter()
             .with_min_len(256)
             .map(|t| {
-                let at =
-                    boundary.triangles[t].map(|v| complex.grid.lattice_from_source(boundary.positions[v as usize]));
+                let corners = boundary.triangles[t];
+                let at = corners.map(|v| complex.grid.lattice_from_source(boundary.positions[v as usize]));
                 let longest = (at[1] - at[0]).length().max((at[2] - at[1]).length()).max((at[0] - at[2]).length());
                 let cuts = ((longest * SAMPLES_PER_CELL).ceil() as u32).clamp(1, MOST_CUTS);
+                let is_another_s = |i: u32, j: u32| {
+                    let at = [i, j, cuts - i - j].iter().position(|&k| k == cuts);
+                    at.is_some_and(|k| first_of_vertex[corners[k] as usize] != t as u32)
+                };
                 let mut samples = Vec::new();
                 for i in 0..=cuts {
-                    for j in 0..=cuts - i {
+                    for j in (0..=cuts - i).filter(|&j| !is_another_s(i, j)) {
                         let w = [f64::from(i), f64::from(j), f64::from(cuts - i - j)].map(|k| k / f64::from(cuts));
                         let p: DVec3 = at.iter().zip(w).map(|(p, w)| *p * w).sum();
                         if let Some(cell) = index.locate(p) {
