@@ -171,6 +171,28 @@ fn a_triangle_without_area_crosses_nothing_from_either_side() {
     }
 }
 
+/// A triangle without area beside another, on a common edge, and where its middle corner goes.
+fn opened(middle: [f32; 3]) -> (Surface, Vec<Vec3A>, Vec<Vec3A>) {
+    let at = |p: [f32; 3]| Vec3A::from_array(p);
+    let rest = [[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [2., 0., 0.]].map(at).to_vec();
+    let surface = Surface::new(vec![[0, 1, 2], [0, 3, 1]], &rest);
+    let mut to = rest.clone();
+    to[3] = at(middle);
+    (surface, rest, to)
+}
+
+#[test]
+fn a_triangle_without_area_is_looked_at_where_nothing_can_be_proven() {
+    let (surface, rest, to) = opened([2., -1., 0.5]);
+    assert!(surface.doubtful_pairs(&rest, &to).is_empty());
+}
+
+#[test]
+fn sabotage_one_that_folds_onto_its_neighbour_is_seen() {
+    let (surface, rest, to) = opened([2., 1., 0.]);
+    assert_eq!(surface.doubtful_pairs(&rest, &to), [(0, 1)]);
+}
+
 /// Depth and direction of each ordered pair, as bits.
 type Pairs = BTreeMap<(u32, u32), (u32, [u32; 3])>;
 
