@@ -237,11 +237,11 @@ fn stays_above<const N: usize>(bound: f64, mut coefficients: [f64; N], halvings:
         return false;
     }
     let mut first = coefficients;
-    for k in 1..N {
+    for (k, of_first) in first.iter_mut().enumerate().skip(1) {
         for j in 0..N - k {
             coefficients[j] = 0.5 * (coefficients[j] + coefficients[j + 1]);
         }
-        first[k] = coefficients[0];
+        *of_first = coefficients[0];
     }
     stays_above(bound, first, halvings - 1) && stays_above(bound, coefficients, halvings - 1)
 }

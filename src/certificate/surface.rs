@@ -188,11 +188,6 @@ impl Surface {
         (of_a | of_b | of_c) && (is_proven(of_a, a) || is_proven(of_b, b) || is_proven(of_c, c))
     }
 
-    /// Whether it is of the plane.
-    pub fn is_flat(&self) -> bool {
-        self.dimension == Dimension::Two
-    }
-
     /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart all the way of a straight
     /// motion of the corners. Few, where nothing crosses. Those with a triangle that is without area at rest, so that
     /// nothing can be proven of them, are looked at in eighths of the way.
@@ -327,8 +322,7 @@ impl Surface {
 fn is_thin([a, b, c]: [Vec3A; 3]) -> bool {
     let [a, b, c] = [b - a, c - b, a - c].map(|e| e.as_dvec3());
     let longest = a.length_squared().max(b.length_squared()).max(c.length_squared());
-    // Also where a corner is no number.
-    !(a.cross(b).length() > f64::from(THIN) * longest)
+    a.cross(b).length() <= f64::from(THIN) * longest
 }
 
 /// Triangles two by two, across edges that are the longest of both; those without such a neighbour are there twice.
