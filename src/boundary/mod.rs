@@ -134,6 +134,19 @@ impl Boundary {
         self
     }
 
+    /// `[vertices]` the first triangle that has each, and as which corner; `None` for a vertex of no triangle.
+    pub(crate) fn first_corners(&self) -> Vec<Option<(usize, usize)>> {
+        let mut first = vec![None; self.positions.len()];
+        for (triangle, corners) in self.triangles.iter().enumerate().rev() {
+            for (corner, vertex) in corners.iter().enumerate() {
+                if let Some(place) = first.get_mut(*vertex as usize) {
+                    *place = Some((triangle, corner));
+                }
+            }
+        }
+        first
+    }
+
     /// `[vertices]` texture coordinates: the first one used by each vertex, `None` where it has none.
     ///
     /// `(0, 0)` is the upper left corner of the image and v grows downwards, as in glTF.

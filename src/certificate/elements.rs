@@ -3,7 +3,11 @@
 use glam::{DVec3, Mat3A, Vec3A};
 use rayon::prelude::*;
 
-use super::predicates::{self, orientation};
+use super::{
+    motion::HALVINGS,
+    predicates::{self, orientation},
+    star,
+};
 use crate::voxel::{Complex, Dimension, KUHN};
 
 /// Cells per parallel task.
@@ -104,7 +108,7 @@ pub(crate) fn flat_stays_positive(ends: [[Vec3A; 3]; 2]) -> bool {
     });
     let largest = [u, v, p, q].iter().fold(glam::DVec2::ZERO, |m, e| m.max(e.abs())).max_element();
     let coefficients = [u.perp_dot(v), 0.5 * (u.perp_dot(q) + p.perp_dot(v)), p.perp_dot(q)];
-    stays_above(1.0e-13 * largest * largest, coefficients, HALVINGS)
+    stays_above(star::ROUNDING * largest * largest, coefficients, HALVINGS)
 }
 
 /// Bounds the rounding of an element's volume in f32, relative to the cube of its cell's largest component: some forty
@@ -216,12 +220,9 @@ fn bernstein([from, to]: [[Vec3A; 8]; 2]) -> bool {
             third([[1, 1, 0], [1, 0, 1], [0, 1, 1]]),
             volume([1, 1, 1]),
         ];
-        stays_above(1.0e-13 * largest.powi(3), coefficients, HALVINGS)
+        stays_above(star::ROUNDING * largest.powi(3), coefficients, HALVINGS)
     })
 }
-
-/// Halvings of a motion at most.
-const HALVINGS: u32 = 10;
 
 /// Whether a polynomial with these Bernstein coefficients is proven to stay above a bound, in halves where it has to be
 /// (de Casteljau).

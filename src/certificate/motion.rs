@@ -11,6 +11,8 @@
 //! Directions that are cheap to find come first. Triangles that keep any distance are proven to do so in the end; what is
 //! left comes nearer than a part in 2^[`HALVINGS`] of the way.
 
+use std::ops::{Add, Mul};
+
 use glam::{DVec3, Vec3A};
 
 use super::star::{Normals, ROUNDING, SINGLE_ROUNDING};
@@ -84,16 +86,34 @@ pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 3], t_ids: [u32; 3
     }
 }
 
-fn halved(s: &Moving, t: &Moving, depth: u32, proof: &dyn Fn(&Moving, &Moving) -> bool) -> bool {
+/// Corners at both ends of a motion.
+type Corners<V, const N: usize> = [[V; N]; 2];
+
+/// Whether a proof comes out for a motion of two, or for its halves, theirs and so on.
+pub(super) fn halved<V, const N: usize>(
+    s: &Corners<V, N>,
+    t: &Corners<V, N>,
+    halvings: u32,
+    proof: &impl Fn(&Corners<V, N>, &Corners<V, N>) -> bool,
+) -> bool
+where
+    V: Copy + Add<Output = V> + Mul<f64, Output = V>,
+{
     if proof(s, t) {
         return true;
     }
-    let halves = |p: &Moving| [[p[0], middle(p)], [middle(p), p[1]]];
-    depth > 0 && halves(s).iter().zip(&halves(t)).all(|(s, t)| halved(s, t, depth - 1, proof))
+    if halvings == 0 {
+        return false;
+    }
+    let (m, n) = (middle(s), middle(t));
+    halved(&[s[0], m], &[t[0], n], halvings - 1, proof) && halved(&[m, s[1]], &[n, t[1]], halvings - 1, proof)
 }
 
-fn middle(p: &Moving) -> [DVec3; 3] {
-    std::array::from_fn(|k| 0.5 * (p[0][k] + p[1][k]))
+fn middle<V, const N: usize>(p: &Corners<V, N>) -> [V; N]
+where
+    V: Copy + Add<Output = V> + Mul<f64, Output = V>,
+{
+    std::array::from_fn(|k| (p[0][k] + p[1][k]) * 0.5)
 }
 
 fn centre(p: &[DVec3; 3]) -> DVec3 {

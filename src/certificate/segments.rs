@@ -11,10 +11,10 @@
 
 use glam::DVec2;
 
-use super::star::ROUNDING;
-
-/// Halvings of a motion at most.
-const HALVINGS: u32 = 10;
+use super::{
+    motion::{HALVINGS, halved},
+    star::ROUNDING,
+};
 
 /// A segment's ends at both ends of a motion. A state is a motion that leads nowhere.
 pub(super) type Moving = [[DVec2; 2]; 2];
@@ -41,15 +41,6 @@ pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 2], t_ids: [u32; 2
         }),
         _ => false,
     }
-}
-
-fn halved(s: &Moving, t: &Moving, depth: u32, proof: &impl Fn(&Moving, &Moving) -> bool) -> bool {
-    if proof(s, t) {
-        return true;
-    }
-    let middle = |p: &Moving| [0, 1].map(|k| 0.5 * (p[0][k] + p[1][k]));
-    let (m, n) = (middle(s), middle(t));
-    depth > 0 && halved(&[s[0], m], &[t[0], n], depth - 1, proof) && halved(&[m, s[1]], &[n, t[1]], depth - 1, proof)
 }
 
 /// Bernstein coefficients of a product of two vectors that change from the first to the second.

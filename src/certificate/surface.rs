@@ -192,7 +192,7 @@ impl Surface {
     /// motion of the corners. Few, where nothing crosses. Those with a triangle that is without area at rest, so that
     /// nothing can be proven of them, are looked at in eighths of the way.
     pub fn doubtful_pairs(&self, from: &[Vec3A], to: &[Vec3A]) -> Vec<(u32, u32)> {
-        self.not_apart(self.unproven_pairs([from, to]), [from, to], HALVINGS)
+        self.doubtful_on(self.unproven_pairs([from, to]), [from, to])
     }
 
     fn unproven_segments(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
@@ -211,7 +211,25 @@ impl Surface {
             let proven = self.stars.proven(&self.triangles, ends);
             pairs.retain(|&(s, t)| !self.are_around(&proven, s, t));
         }
-        self.not_apart(pairs, ends, HALVINGS)
+        self.doubtful_on(pairs, ends)
+    }
+
+    fn doubtful_on(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
+        let mut left = self.not_apart(pairs, ends, HALVINGS);
+        if self.dimension == Dimension::Three {
+            left.retain(|&(s, t)| !(self.thin[s as usize] || self.thin[t as usize]) || self.cross_at_looks(s, t, ends));
+        }
+        left
+    }
+
+    /// Whether two triangles cross in some eighth of a way.
+    fn cross_at_looks(&self, s: u32, t: u32, [from, to]: [&[Vec3A]; 2]) -> bool {
+        let [s, t] = [s, t].map(|t| [self.triangle(t, from), self.triangle(t, to)]);
+        let at = |[from, to]: &[Triangle; 2], part: f64| Triangle {
+            at: [0, 1, 2].map(|k| from.at[k].lerp(to.at[k], part)),
+            id: from.id,
+        };
+        LOOKS.into_iter().any(|part| triangles_cross(&at(&s, part), &at(&t, part)))
     }
 
     /// Sorts pairs and leaves out those that are proven apart.
@@ -237,16 +255,7 @@ impl Surface {
                         return false;
                     }
                 }
-                if stay_apart(&moving(s), &moving(t), s_ids, t_ids, halvings) {
-                    return false;
-                }
-                let is_thin = self.thin[s as usize] || self.thin[t as usize];
-                let cross_at = |part: f64| {
-                    let at = |[from, to]: Moving| [0, 1, 2].map(|k| from[k].lerp(to[k], part));
-                    let [s, t] = [(moving(s), s_ids), (moving(t), t_ids)].map(|(m, id)| Triangle { at: at(m), id });
-                    triangles_cross(&s, &t)
-                };
-                !is_thin || LOOKS.into_iter().any(cross_at)
+                !stay_apart(&moving(s), &moving(t), s_ids, t_ids, halvings)
             })
             .collect();
         left.par_sort_unstable();

@@ -73,12 +73,12 @@ impl Flow {
                 .take(4)
                 .enumerate()
                 .filter(|(_, cell)| **cell != u32::MAX)
-                .map(|(corner, &cell)| (corner, &cells[cell as usize]))
+                .map(|(corner, &cell)| (corner, cell as usize))
         };
         let mut source: Vec<Vec3A> = (0..complex.nodes())
             .into_par_iter()
             .with_min_len(CHUNK)
-            .map(|i| Vec3A::X * -around(i).map(|(corner, cell)| cell.source(corner)).sum::<f32>())
+            .map(|i| Vec3A::X * -around(i).map(|(corner, cell)| cells[cell].source(corner)).sum::<f32>())
             .collect();
         let mut potential = vec![Vec3A::ZERO; complex.nodes()];
         let goal = TOLERANCE * source.iter().map(|s| f64::from(s.x).powi(2)).sum::<f64>().sqrt();
@@ -95,14 +95,11 @@ impl Flow {
             .with_min_len(CHUNK)
             .map(|i| {
                 let (mut sum, mut area) = (Vec2::ZERO, 0.0);
-                for (corner, &cell) in complex.cells_around[i].iter().take(4).enumerate() {
-                    if cell == u32::MAX {
-                        continue;
-                    }
+                for (corner, cell) in around(i) {
                     for (element, corners) in ELEMENTS.iter().enumerate() {
                         if corners.contains(&corner) {
-                            sum += cells[cell as usize].areas[element] * slopes[cell as usize][element];
-                            area += cells[cell as usize].areas[element];
+                            sum += cells[cell].areas[element] * slopes[cell][element];
+                            area += cells[cell].areas[element];
                         }
                     }
                 }

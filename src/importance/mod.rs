@@ -130,18 +130,10 @@ impl Stack {
 
     /// `[vertices]` importance at the boundary's vertices, > 0 and finite.
     pub fn at_vertices(&self, boundary: &Boundary) -> Vec<f32> {
-        let mut corner_of = vec![None; boundary.positions.len()];
-        for (triangle, corners) in boundary.triangles.iter().enumerate().rev() {
-            for (corner, vertex) in corners.iter().enumerate() {
-                if let Some(place) = corner_of.get_mut(*vertex as usize) {
-                    *place = Some((triangle, corner));
-                }
-            }
-        }
         let at = |(vertex, corner): (usize, &Option<(usize, usize)>)| {
             self.at(boundary, &Place::of_vertex(boundary, vertex, *corner))
         };
-        corner_of.par_iter().enumerate().map(at).collect()
+        boundary.first_corners().par_iter().enumerate().map(at).collect()
     }
 
     /// The same with `[vertices]` painted differences of ln f over all layers.

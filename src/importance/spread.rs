@@ -80,12 +80,7 @@ impl Sampling {
     pub fn new(boundary: &Boundary, complex: &Complex) -> Self {
         let index = CellIndex::new(complex);
         // Each vertex is sampled once, by the first of its triangles: most samples of a fine mesh are vertices.
-        let mut first_of_vertex = vec![u32::MAX; boundary.positions.len()];
-        for (t, corners) in boundary.triangles.iter().enumerate().rev() {
-            for &v in corners {
-                first_of_vertex[v as usize] = t as u32;
-            }
-        }
+        let first_corners = boundary.first_corners();
         let found: Vec<Vec<Placed>> = (0..boundary.triangles.len())
             .into_par_iter()
             .with_min_len(256)
@@ -96,7 +91,7 @@ impl Sampling {
                 let cuts = ((longest * SAMPLES_PER_CELL).ceil() as u32).clamp(1, MOST_CUTS);
                 let is_another_s = |i: u32, j: u32| {
                     let at = [i, j, cuts - i - j].iter().position(|&k| k == cuts);
-                    at.is_some_and(|k| first_of_vertex[corners[k] as usize] != t as u32)
+                    at.and_then(|k| first_corners[corners[k] as usize]).is_some_and(|(first, _)| first != t)
                 };
                 let mut samples = Vec::new();
                 for i in 0..=cuts {

@@ -69,8 +69,14 @@ impl Refinement {
 
     /// All of its nodes.
     pub fn all(&self) -> Refined {
-        let nodes = (0..self.coarse as u32).map(|i| ([i; 4], [1.0, 0.0, 0.0, 0.0]));
-        Refined(nodes.chain(self.middles.iter().copied()).collect())
+        Refined((0..self.coarse + self.middles.len()).map(|node| self.carried(node)).collect())
+    }
+
+    fn carried(&self, node: usize) -> Carried {
+        match node.checked_sub(self.coarse) {
+            None => ([node as u32; 4], [1.0, 0.0, 0.0, 0.0]),
+            Some(edge) => self.middles[edge],
+        }
     }
 
     /// Those of its nodes that are named, which are named by their places among them from now on.
@@ -82,10 +88,7 @@ impl Refinement {
         let mut refined = Vec::new();
         for (node, place) in place.iter_mut().enumerate().filter(|(_, place)| **place == 0) {
             *place = refined.len() as u32;
-            refined.push(match node.checked_sub(self.coarse) {
-                None => ([node as u32; 4], [1.0, 0.0, 0.0, 0.0]),
-                Some(edge) => self.middles[edge],
-            });
+            refined.push(self.carried(node));
         }
         for node in names.iter_mut().flatten() {
             *node = place[*node as usize];
