@@ -16,9 +16,9 @@ use common::{RESOLUTIONS, Subject, Table, human_seconds};
 use criterion::{BenchmarkId, Criterion};
 use glam::{Mat3A, Quat, Vec3A};
 use homunculus::{
-    certificate::certify,
+    certificate::{Shell, certify},
     collision::{
-        Asked, Contacts, Growth, Problem, Shell, contact_step, global_step, grow, guard_step, local_step,
+        Asked, Contacts, Growth, Problem, contact_step, global_step, grow, guard_step, local_step,
         plugin::{CollisionProblem, Growing, Rotations, Shells, Warped},
     },
     edge::EdgeSolver,

@@ -52,9 +52,11 @@ pub mod diagnostics;
 pub mod edge;
 pub mod error;
 pub mod export;
+pub mod file;
 pub mod film;
 pub mod gallery;
 pub mod importance;
+pub mod multigrid;
 pub mod paint;
 #[cfg(feature = "window")]
 pub mod panel;

@@ -22,29 +22,18 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::diagnostics::human_bytes;
-use crate::export;
+use crate::file::write_atomically;
 use crate::gallery;
 use crate::importance::Layer;
 use crate::paint::Edit;
+use crate::voxel::{check_flat_resolution, check_resolution};
 use crate::{Error, Result};
 
 /// The version of scene files this program writes and reads.
 pub const VERSION: u32 = 1;
 
-/// Fewest cells along the longest axis: below 8 a limb is thinner than a cell.
-pub const MIN_RESOLUTION: u32 = 8;
-
-/// Most cells along the longest axis: 256³ fills a laptop's memory.
-pub const MAX_RESOLUTION: u32 = 256;
-
 /// Most keyframes: each is a whole mesh in the growth file.
 pub const MAX_KEYS: usize = 64;
-
-/// Memory per inside cell, about: neighbour tables and entries of two operators (2 × 112 B and their coarser lattices),
-/// corners, targets and rotations of the cell, vectors of the iteration, nine keyframes. Measured at 71,000 cells as peak
-/// memory less the program's own. Too low here promises what swaps; too high frightens off what would run.
-const BYTES_PER_CELL: f64 = 1300.0;
 
 /// Where the boundary comes from, written `gallery:NAME` or as a path.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -118,7 +107,7 @@ pub struct Draft {
     /// What was painted over the layers, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub strokes: Vec<Edit>,
-    /// Cells along the longest axis, [`MIN_RESOLUTION`]`..=`[`MAX_RESOLUTION`].
+    /// Cells along the longest axis, [`MIN_RESOLUTION`](crate::voxel::MIN_RESOLUTION)`..=`[`MAX_RESOLUTION`](crate::voxel::MAX_RESOLUTION).
     #[serde(default = "defaults::resolution")]
     pub resolution: u32,
     /// μ in 0..=1: 0 keeps shape, 1 reaches the size asked for.
@@ -247,7 +236,7 @@ impl Scene {
         draft.map_files(|file| relative(file, folder));
         let pretty = ron::ser::PrettyConfig::new();
         let text = format().to_string_pretty(&draft, pretty).map_err(|e| Error::Fault(format!("scene to RON: {e}")))?;
-        export::write_atomically(path, |file| writeln!(file, "{text}"))
+        write_atomically(path, |file| writeln!(file, "{text}"))
     }
 
     /// The layers that are not left out.
@@ -278,42 +267,6 @@ impl Draft {
         }
         self.layers = std::mem::take(&mut self.layers).into_iter().map(|layer| layer.map_files(&f)).collect();
     }
-}
-
-/// Memory a complex of so many inside cells takes to warp, in bytes, about.
-pub fn memory_estimate(cells: f64) -> f64 {
-    cells * BYTES_PER_CELL
-}
-
-/// Whether so many cells along the longest axis can be had.
-///
-/// # Errors
-/// Names the range, and the memory that a solid box of that resolution would take.
-pub fn check_resolution(resolution: u32) -> Result<()> {
-    if (MIN_RESOLUTION..=MAX_RESOLUTION).contains(&resolution) {
-        return Ok(());
-    }
-    let bytes = human_bytes(memory_estimate(f64::from(resolution).powi(3)));
-    Err(Error::input(format!(
-        "resolution {resolution} is not within {MIN_RESOLUTION} to {MAX_RESOLUTION}: a solid box would take about {bytes} of memory"
-    )))
-}
-
-/// Cells along the longest side of a picture, at most.
-pub const MAX_FLAT_RESOLUTION: u32 = 512;
-
-/// Refuses a resolution out of range for a picture.
-///
-/// # Errors
-/// Names the range.
-pub fn check_flat_resolution(resolution: u32) -> Result<()> {
-    if (MIN_RESOLUTION..=MAX_FLAT_RESOLUTION).contains(&resolution) {
-        return Ok(());
-    }
-    let bytes = human_bytes(memory_estimate(f64::from(resolution).powi(2)));
-    Err(Error::input(format!(
-        "resolution {resolution} is not within {MIN_RESOLUTION} to {MAX_FLAT_RESOLUTION}: a full square would take about {bytes} of memory"
-    )))
 }
 
 /// RON in which `range: (0.5, 2.0)` need not be written `Some((0.5, 2.0))`.

@@ -20,9 +20,9 @@ pub use crate::certificate::{Certificate, Distortion, Fidelity, RegionFidelity};
 use crate::{
     Error, Result,
     boundary::Boundary,
-    certificate::{certify, distortion, fidelity},
+    certificate::{Shell, certify, distortion, fidelity},
     collision::{
-        Growth, Shell,
+        Growth,
         areas::{AreaCorrection, Areas},
         grow,
         plugin::{
@@ -40,13 +40,12 @@ use crate::{
         plugin::{Importance, ImportancePlugin},
     },
     reference::plugin::{ReferenceIterations, ReferencePlugin},
-    scene::{check_flat_resolution, check_resolution},
     transfer::{
         Binding, flat_boundary,
         plugin::{Bound, SelfIntersections, TransferPlugin},
     },
     voxel::{
-        Complex, Flat,
+        Complex, Flat, check_flat_resolution, check_resolution,
         plugin::{Lattice, PixelShares, SuspectedWelds, VoxelPlugin},
         suspected_welds, voxelize,
     },

@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, UVec2, Vec3A};
 use homunculus::boundary::{Boundary, Regions};
-use homunculus::film::blend;
-use homunculus::picture::importance::{Field, Layer};
+use homunculus::importance::field::{Field, Layer};
 use homunculus::picture::{self, Cut, FlatMesh, Picture};
 use homunculus::schedule::{Domain, Observer, Progress, Settings, Solved, solve_domain};
 use homunculus::voxel::Flat;
+use homunculus::voxel::blend;
 
 struct Patient;
 

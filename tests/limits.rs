@@ -14,8 +14,8 @@ use homunculus::{
     Error, Result,
     boundary::Boundary,
     importance::{Layer, Stack},
-    scene::{MAX_RESOLUTION, MIN_RESOLUTION},
     schedule::{self, Outcome, Settings},
+    voxel::{MAX_RESOLUTION, MIN_RESOLUTION},
 };
 
 /// What any of these may take.

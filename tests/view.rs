@@ -14,13 +14,12 @@ use common::cuboids;
 use glam::{DVec3, Vec3A};
 use homunculus::{
     boundary::Boundary,
-    film::blend,
     view::{
         Backdrop, Body, Ghost, Looks, Mode, Orbit, Picker, Placement, Pose, Quality, Studio, Target, Unhurried,
         ViewFrame, VoxelColour, Wipe, adapter,
         headless::{Renderer, Shown},
     },
-    voxel::voxelize,
+    voxel::{blend, voxelize},
 };
 use image::RgbaImage;
 

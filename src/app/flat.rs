@@ -17,19 +17,25 @@ use super::outputs::Outputs;
 use super::scene_options::SceneOptions;
 use super::{Verdict, cancel, progress, say, warp};
 use crate::boundary::Boundary;
-use crate::collision::Shell;
+use crate::certificate::Shell;
 use crate::export::report::{AreaReport, Report};
-use crate::export::{self, GrowthFrame, write_atomically};
-use crate::film::blend_places;
 use crate::importance;
+use crate::importance::field::Field;
 use crate::picture::animate::{self, Frame};
-use crate::picture::importance::Field;
 use crate::picture::render::{Canvas, Painter, mark};
-use crate::picture::{FlatMesh, Picture, areas};
 use crate::scene::Scene;
 use crate::schedule::{self, Domain, Solved};
 use crate::voxel::Complex;
+use crate::voxel::blend_places;
 use crate::{Error, Result};
+use crate::{
+    export::{self, GrowthFrame},
+    file::write_atomically,
+};
+use crate::{
+    importance::areas,
+    picture::{FlatMesh, Picture},
+};
 
 /// Frames of an animated picture in each second: smooth enough for growth, and half the size of a film's.
 const FRAMES_PER_SECOND: f32 = 15.0;

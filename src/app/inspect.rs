@@ -11,10 +11,13 @@ use crate::boundary::{Attribute, Boundary};
 use crate::diagnostics::human_bytes;
 use crate::export::report::{DomainReport, InputReport};
 use crate::picture::Pixels;
-use crate::scene::{Source, check_flat_resolution, check_resolution};
 use crate::schedule::{self, DomainSummary, InputSummary};
 use crate::voxel::Flat;
 use crate::{Error, Result};
+use crate::{
+    scene::Source,
+    voxel::{check_flat_resolution, check_resolution},
+};
 
 /// What `--json` prints.
 #[derive(Debug, Serialize)]

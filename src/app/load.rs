@@ -8,9 +8,9 @@ use super::{cancel, note};
 use crate::boundary::{self, Attribute, Boundary, Regions};
 use crate::gallery::human::read_values;
 use crate::gallery::picture::PictureScene;
+use crate::importance::field::Field;
 use crate::importance::{Layer, Stack};
 use crate::paint::Ground;
-use crate::picture::importance::Field;
 use crate::picture::{self, Cut, Picture};
 use crate::scene::{Scene, Source};
 use crate::schedule::Settings;
@@ -141,8 +141,8 @@ pub(super) fn picture_field(scene: &Scene, picture: &Picture, own: Option<&Field
 }
 
 /// A layer as a picture takes it.
-fn picture_layer(layer: &Layer) -> Result<picture::importance::Layer> {
-    use picture::importance::Layer as Of;
+fn picture_layer(layer: &Layer) -> Result<crate::importance::field::Layer> {
+    use crate::importance::field::Layer as Of;
     Ok(match layer.clone() {
         Layer::Sphere { centre: [x, y, _], radius, value } => Of::Disc { centre: [x, y], radius, value },
         Layer::Image { path, range } => Of::Image { path, range },

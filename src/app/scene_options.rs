@@ -7,9 +7,12 @@ use clap::{ArgMatches, Args, ValueEnum};
 
 use crate::gallery;
 use crate::importance::{Layer, Range};
-use crate::scene::{Draft, MAX_KEYS, MAX_RESOLUTION, MIN_RESOLUTION, Scene, Source};
 use crate::schedule::Reference;
 use crate::{Error, Result};
+use crate::{
+    scene::{Draft, MAX_KEYS, Scene, Source},
+    voxel::{MAX_RESOLUTION, MIN_RESOLUTION},
+};
 
 /// The options that say what to warp and how.
 #[derive(Debug, Args)]

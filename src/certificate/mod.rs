@@ -18,6 +18,7 @@ mod motion;
 mod place;
 mod predicates;
 mod segments;
+mod shell;
 mod star;
 mod surface;
 mod tree;
@@ -26,16 +27,14 @@ pub(crate) use elements::{cell_stays_positive, flat_stays_positive};
 pub use fidelity::{Distortion, Fidelity, RegionFidelity, distortion, fidelity, volume_ratios};
 pub use place::Places;
 pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};
+pub use shell::{Placed, Shell};
 pub use surface::Surface;
 pub use tree::{Bounds, Posed, Tree};
 
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
-use crate::{
-    collision::{Placed, Shell},
-    voxel::{Complex, Dimension},
-};
+use crate::voxel::{Complex, Dimension};
 
 /// What the check of one state found. Only [`certify`], [`certify_rest`] and [`certify_way`] make one.
 #[derive(Debug, Clone, PartialEq)]

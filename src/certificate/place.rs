@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3A};
 use super::{elements, enclosed_solids};
 use crate::{
     boundary::Boundary,
-    collision::Shell,
+    certificate::Shell,
     transfer::CellIndex,
     voxel::{Complex, Dimension},
 };

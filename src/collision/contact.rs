@@ -6,7 +6,7 @@
 use glam::{IVec3, Vec3A};
 use rayon::prelude::*;
 
-use crate::{edge::CHUNK, voxel::Complex};
+use crate::voxel::{CHUNK, Complex};
 
 /// Weight of a contact relative to an edge with one cell around it. Below about 5 contacts give way until the guard
 /// must stop them; above about 20 they shake.

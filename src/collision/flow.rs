@@ -16,8 +16,8 @@ use rayon::prelude::*;
 
 use super::Asked;
 use crate::{
-    edge::{CHUNK, Multigrid, Weights, conjugate_gradients},
-    voxel::{Complex, Dimension, KUHN_FLAT},
+    multigrid::{Multigrid, Weights, conjugate_gradients},
+    voxel::{CHUNK, Complex, Dimension, KUHN_FLAT},
 };
 
 /// A cell gains or loses at most this much at once, as `ln` of its area: about what a step of λ asks for, so that growth

@@ -9,12 +9,9 @@ use std::borrow::Cow;
 use glam::Vec3A;
 use rayon::prelude::*;
 
-use super::Shell;
 use crate::{
-    certificate::{cell_stays_positive, enclosed_solids, is_positive},
-    edge::CHUNK,
-    film::blend,
-    voxel::{Complex, Dimension},
+    certificate::{Shell, cell_stays_positive, enclosed_solids, is_positive},
+    voxel::{CHUNK, Complex, Dimension, blend},
 };
 
 /// Elements may not shrink further once below this part of their target volume. Zero would let slivers through that the

@@ -21,21 +21,20 @@ pub mod growth;
 pub mod guard;
 pub mod local;
 pub mod plugin;
-mod shell;
 
 use glam::{DMat3, DVec3, Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
-    edge::{CHUNK, Multigrid, Weights, dot, preconditioned},
+    certificate::Shell,
     importance::cell_importance,
-    voxel::{Complex, Dimension},
+    multigrid::{Multigrid, Weights, dot, preconditioned},
+    voxel::{CHUNK, Complex, Dimension},
 };
 pub use contact::Contacts;
 pub use flow::Flow;
 pub use growth::Growth;
 pub use guard::{Guarded, Watch};
-pub use shell::{Placed, Shell};
 
 /// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing
 /// (measured: the rotations, not the solve, are what converges slowly).

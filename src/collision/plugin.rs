@@ -5,18 +5,19 @@ use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Flow, Growth, Guarded, Placed, Problem, Shell,
+    Asked, Contacts, Flow, Growth, Guarded, Problem,
     areas::{AreaCorrection, Corrected},
     contact, contact_step, flow, global_step, grow, guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
+    certificate::{Placed, Shell},
     diagnostics::Stopwatch,
-    edge::{CHUNK, plugin::LinearSolution},
-    film::{blend, plugin::Reel},
+    edge::plugin::LinearSolution,
+    film::plugin::Reel,
     importance::{asked_sizes, plugin::Importance, smoothed},
     schedule::{Domain, Solve, Stage},
     voxel::{
-        Dimension,
+        CHUNK, Dimension, blend,
         plugin::{Lattice, PixelShares},
     },
 };

@@ -10,22 +10,13 @@
 //! The paper sweeps Jacobi 20 times; that is kept in `reference`. Here: conjugate gradients
 //! preconditioned by one multigrid cycle, from the last solution.
 
-mod level;
-mod multigrid;
 pub mod plugin;
-mod solve;
-
-pub use multigrid::{Multigrid, Weights};
-pub(crate) use solve::preconditioned;
-pub use solve::{Solution, conjugate_gradients, dot};
 
 use glam::Vec3A;
 use rayon::prelude::*;
 
-use crate::voxel::{Complex, DIRECTIONS, NEIGHBOURS};
-
-/// Nodes per parallel task. Fixed, so that sums are split in the same places for any number of threads.
-pub(crate) const CHUNK: usize = 2048;
+use crate::multigrid::{Multigrid, Solution, Weights, conjugate_gradients};
+use crate::voxel::{CHUNK, Complex, DIRECTIONS, NEIGHBOURS};
 
 /// What is left of Eq. 1's normal equations: `r_i = Σ_{e=(i,j)} (x_j − x_i) − f_e (v_j − v_i)`, f_e the mean of its ends.
 ///

@@ -8,10 +8,11 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
+use super::Surface;
 use super::glb::Scene;
-use super::{Surface, write_atomically};
 use crate::boundary::Boundary;
 use crate::error::{Error, Result};
+use crate::file::write_atomically;
 use std::io::Write as _;
 
 /// The rests at both ends, as a part of the growing time.

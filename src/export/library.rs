@@ -7,11 +7,12 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::obj::one_line;
-use super::{srgb, write_atomically};
+use super::srgb;
 use crate::boundary::Boundary;
 use crate::boundary::format::{load, text};
 use crate::boundary::mtl::{find, map_file};
 use crate::error::Result;
+use crate::file::write_atomically;
 
 /// Copies the library of an input OBJ, and the textures it names, beside the output; the name for its `mtllib` line.
 ///

@@ -6,14 +6,14 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::write_atomically;
 use crate::collision::areas::LEAST_CELLS;
 use crate::diagnostics::peak_memory_bytes;
-use crate::picture::importance::Field;
-use crate::picture::{RegionArea, median_error, worst};
-use crate::scene::{Scene, memory_estimate};
+use crate::file::write_atomically;
+use crate::importance::field::Field;
+use crate::importance::{RegionArea, median_error, worst};
 use crate::schedule::{Counts, DomainSummary, InputSummary, Outcome, Reference, Settings};
 use crate::{Error, Result};
+use crate::{scene::Scene, voxel::memory_estimate};
 
 /// All that is written about a run.
 #[derive(Debug, Clone, Serialize)]

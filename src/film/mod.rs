@@ -6,14 +6,12 @@
 
 pub mod plugin;
 
-use glam::{DVec2, Vec2, Vec3A};
-use rayon::prelude::*;
+use glam::{Vec2, Vec3A};
 
 use crate::{
-    certificate::{Certificate, certify, certify_way},
-    collision::{Placed, Shell, Watch, guard::guard},
-    edge::CHUNK,
-    voxel::{Complex, Dimension},
+    certificate::{Certificate, Placed, Shell, certify, certify_way},
+    collision::{Watch, guard::guard},
+    voxel::{Complex, Dimension, blend},
 };
 
 /// One certified state.
@@ -222,16 +220,6 @@ fn reached(
     guard(complex, shells, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
     let certificate = certify(complex, shells, &positions);
     Keyframe { lambda, positions, certificate, way_is_clear: false }
-}
-
-/// `(1 − t) a + t b` of places in the plane.
-pub fn blend_places(a: &[DVec2], b: &[DVec2], t: f64) -> Vec<DVec2> {
-    a.par_iter().zip(b).with_min_len(CHUNK).map(|(a, b)| a.lerp(*b, t)).collect()
-}
-
-/// `(1 − t) a + t b`.
-pub fn blend(a: &[Vec3A], b: &[Vec3A], t: f32) -> Vec<Vec3A> {
-    a.par_iter().zip(b).with_min_len(CHUNK).map(|(a, b)| *a + t * (*b - *a)).collect()
 }
 
 #[cfg(test)]

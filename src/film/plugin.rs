@@ -5,9 +5,9 @@ use glam::Vec3A;
 
 use super::{Film, Keyframe, is_clear};
 use crate::{
-    certificate::{Certificate, certify, certify_rest, certify_way},
+    certificate::{Certificate, Placed, Shell, certify, certify_rest, certify_way},
     collision::{
-        Placed, Shell, Watch, guard,
+        Watch, guard,
         plugin::{BoundaryAtRisk, Growing, Leap, Shells, Sizes, Warped},
     },
     diagnostics::Stopwatch,

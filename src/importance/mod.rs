@@ -14,8 +14,10 @@
 //! [`Stack::load`] reads and checks every file once; [`Stack::evaluate`] is a pure function of each sample, so its
 //! result is the same for any number of threads.
 
-pub(crate) mod admission;
+mod admission;
+mod areas;
 mod colour;
+pub mod field;
 mod layer;
 mod picture;
 pub mod plugin;
@@ -34,6 +36,7 @@ use admission::Admission;
 use picture::Picture;
 use sphere::Sphere;
 
+pub use areas::{RegionArea, areas, median_error, worst};
 pub use colour::colours;
 pub use layer::{CLAMP_MAX, CLAMP_MIN, IMAGE_RANGE, Layer, Range};
 pub use sphere::falloff;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::Sample;
 use crate::{
     boundary::Boundary,
-    edge::{Multigrid, Weights, conjugate_gradients},
+    multigrid::{Multigrid, Weights, conjugate_gradients},
     transfer::CellIndex,
     voxel::{Complex, Dimension},
 };

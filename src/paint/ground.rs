@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 use crate::boundary::{Boundary, Regions};
 use crate::importance::Stack;
+use crate::importance::field::Field;
 use crate::picture::Picture;
-use crate::picture::importance::Field;
 use crate::transfer::flat_boundary;
 use crate::voxel::{Complex, Flat, Grid};
 use crate::{Error, Result};
@@ -232,7 +232,7 @@ impl Vertices {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::importance::Layer;
+    use crate::importance::field::Layer;
     use crate::picture::{Cut, read_bytes};
     use std::path::Path;
 

@@ -5,7 +5,8 @@ use bevy_egui::egui::{self, Response, Ui};
 use super::{Facts, Wish, theme};
 use crate::{
     diagnostics::human_bytes,
-    scene::{MAX_FLAT_RESOLUTION, MAX_KEYS, MAX_RESOLUTION, MIN_RESOLUTION, memory_estimate},
+    scene::MAX_KEYS,
+    voxel::{MAX_FLAT_RESOLUTION, MAX_RESOLUTION, MIN_RESOLUTION, memory_estimate},
 };
 
 /// What is being dragged: the solver is told when it is let go.

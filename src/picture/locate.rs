@@ -136,7 +136,7 @@ fn orient(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 
 /// An affine map of the plane: p ↦ `to` + `linear` · (p − `from`).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Affine {
+pub(crate) struct Affine {
     pub from: DVec2,
     pub to: DVec2,
     pub linear: DMat2,

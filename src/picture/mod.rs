@@ -6,25 +6,22 @@
 //! | part | section | what |
 //! |---|---|---|
 //! | [`read()`] | 3.2 | a file becomes a [`Picture`]: its pixels, and its domain by alpha or by a background cut out |
-//! | [`importance`] | 3.2 | f per pixel, from discs, colour maps and regions with values |
-//! | [`areas()`] | – | asked and achieved area of each region |
 //! | [`render`] | 3.5 | the inverse map, filtered: the warped picture |
 //! | [`animate`] | – | growth as APNG or GIF |
 
 pub mod animate;
-mod areas;
 mod cut;
-pub mod importance;
 mod locate;
+mod pieces;
 mod pixels;
-mod read;
+pub(crate) mod read;
 pub mod render;
 
 use glam::{DVec2, UVec2};
 
-pub(crate) use areas::pieces;
-pub use areas::{RegionArea, areas, median_error, worst};
 pub use cut::{Background, Cut};
+pub(crate) use locate::Affine;
+pub(crate) use pieces::pieces;
 pub use pixels::Pixels;
 pub use read::{MAX_PIXELS, is_picture, read, read_bytes};
 

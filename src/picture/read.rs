@@ -21,7 +21,7 @@ const BYTES_PER_PIXEL: u64 = 4 + 1 + 4 + 16;
 const MAX_FILE: u64 = 400_000_000;
 
 /// What a file decodes to, before anything is cut out.
-pub(super) struct Decoded {
+pub(crate) struct Decoded {
     pub pixels: Pixels,
     pub profile: Option<Vec<u8>>,
     pub warnings: Vec<String>,
@@ -58,7 +58,7 @@ fn picture(name: &str, path: &Path, decoded: Decoded, cut: &Cut) -> Result<Pictu
 }
 
 /// The whole file, unless it is too long for any picture that is read.
-pub(super) fn file(path: &Path) -> Result<Vec<u8>> {
+pub(crate) fn file(path: &Path) -> Result<Vec<u8>> {
     let length = std::fs::metadata(path).map_err(|e| Error::reading(path, e))?.len();
     if length > MAX_FILE {
         let sentence =
@@ -69,7 +69,7 @@ pub(super) fn file(path: &Path) -> Result<Vec<u8>> {
 }
 
 /// Decodes a picture, turned as its camera was held.
-pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Decoded> {
+pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Decoded> {
     let refuse = |sentence: String| Err(Error::in_file(path, sentence));
     let format = match kind(bytes) {
         Some(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,

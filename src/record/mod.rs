@@ -158,7 +158,7 @@ impl Take {
         text.push(b'\n');
         let refused = |source| Error::writing(&sidecar, source);
         // On the disk before the film takes its name: after that nothing can fail for want of room.
-        let (folder, builder) = crate::export::beside(&sidecar);
+        let (folder, builder) = crate::file::beside(&sidecar);
         let mut temporary = builder.tempfile_in(folder).map_err(refused)?;
         temporary.write_all(&text).map_err(refused)?;
         whole.name()?;

@@ -7,12 +7,12 @@ use glam::{Vec3, Vec3A};
 
 use super::Mix;
 use crate::boundary::Boundary;
+use crate::certificate::Shell;
 use crate::certificate::{Certificate, Places, certify};
-use crate::collision::Shell;
-use crate::film::blend;
 use crate::schedule::{Outcome, Solved};
 use crate::transfer::Binding;
 use crate::view::{Body, Pose, ViewFrame};
+use crate::voxel::blend;
 use crate::voxel::{Complex, Dimension};
 
 /// A solved domain before the camera.

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 
 use crate::{
     collision::{Asked, Problem, contact_step},
-    edge::{CHUNK, edge_from_neighbour},
-    voxel::{Complex, NEIGHBOURS},
+    edge::edge_from_neighbour,
+    voxel::{CHUNK, Complex, NEIGHBOURS},
 };
 
 /// Iterations of Fig. 5 in the paper.

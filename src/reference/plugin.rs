@@ -5,17 +5,17 @@ use glam::Vec3A;
 
 use super::{ITERATIONS, Reading, fig5};
 use crate::{
-    certificate::certify,
+    certificate::{Shell, certify},
     collision::{
-        Growth, Problem, Shell,
+        Growth, Problem,
         plugin::{CollisionProblem, Growing, Shells, Warped},
     },
     diagnostics::Stopwatch,
     edge::plugin::LinearSolution,
-    film::{Film, Keyframe, blend, plugin::Reel},
+    film::{Film, Keyframe, plugin::Reel},
     importance::plugin::Importance,
     schedule::{Domain, Reference, Solve, Stage},
-    voxel::plugin::Lattice,
+    voxel::{blend, plugin::Lattice},
 };
 
 /// Iterations done so far.

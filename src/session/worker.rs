@@ -9,18 +9,15 @@ use super::{Asked, Asking, Histogram, Lattice, Linear, Order, Phase, Shared, Sna
 use crate::{
     Error, Result,
     boundary::Boundary,
-    collision::{
-        Shell,
-        plugin::{CollisionProblem, Shells, Warped},
-    },
+    certificate::Shell,
+    collision::plugin::{CollisionProblem, Shells, Warped},
     edge::plugin::LinearSolution,
     film::plugin::Reel,
     importance::plugin::Importance,
-    scene::{check_flat_resolution, check_resolution},
     schedule::{Domain, Run, Settings, domain_summary},
     transfer::{Binding, flat_boundary},
     voxel::{
-        self, Dimension,
+        self, Dimension, check_flat_resolution, check_resolution,
         plugin::{PixelShares, SuspectedWelds},
         suspected_welds, voxelize,
     },

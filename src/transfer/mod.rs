@@ -5,11 +5,11 @@
 //! displacement gives back the input's own digits where nothing moved. And V'' is first refined by one smooth halving of
 //! the lattice ([`Refinement`]), so that a fine surface does not show the lattice it was carried by.
 
-mod flat;
+mod flat_mesh;
 pub mod plugin;
 mod refine;
 
-pub use flat::flat_boundary;
+pub use flat_mesh::flat_boundary;
 pub use refine::{Refined, Refinement};
 
 use glam::{DVec3, IVec3, Vec3A};

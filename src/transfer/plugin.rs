@@ -7,7 +7,8 @@ use bevy::prelude::*;
 use super::Binding;
 use crate::{
     Error,
-    collision::{Shell, plugin::Shells},
+    certificate::Shell,
+    collision::plugin::Shells,
     diagnostics::Stopwatch,
     schedule::{Domain, Failure, Solve, Stage},
     voxel::plugin::Lattice,

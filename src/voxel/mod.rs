@@ -13,20 +13,29 @@
 //! # Practice
 //! All lattice coordinates are in cells (edge length 1); [`Grid`] converts to and from source units.
 
+mod blend;
 mod complex;
 mod flat;
+mod limits;
 pub mod plugin;
 mod rasterize;
 mod welds;
 
+pub use blend::{blend, blend_places};
 pub use complex::{Complex, DIRECTIONS, Dimension, KUHN, KUHN_FLAT, NEIGHBOURS, opposite};
 pub use flat::{Flat, Share, Shares};
+pub use limits::{
+    MAX_FLAT_RESOLUTION, MAX_RESOLUTION, MIN_RESOLUTION, check_flat_resolution, check_resolution, memory_estimate,
+};
 pub use rasterize::rasterize;
 pub use welds::suspected_welds;
 
 use glam::{DVec3, UVec3};
 
 use crate::{Error, Result, boundary::Boundary};
+
+/// Nodes per parallel task. Fixed, so that sums are split in the same places for any number of threads.
+pub(crate) const CHUNK: usize = 2048;
 
 /// Where the lattice lies in source space.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,8 +2,11 @@
 
 use crate::{Files, colourful, ids, mesh_of, picture_of, png_bytes, regions, sentence, shared};
 use glam::{DVec2, dvec2};
-use homunculus::picture::importance::{Field, Layer};
-use homunculus::picture::{self, Cut, RegionArea, areas};
+use homunculus::importance::field::{Field, Layer};
+use homunculus::{
+    importance::{RegionArea, areas},
+    picture::{self, Cut},
+};
 use image::{GrayImage, Luma, Rgba, RgbaImage};
 
 fn image_layer(range: Option<(f32, f32)>) -> Layer {

@@ -9,7 +9,7 @@ mod reading;
 mod scenes;
 
 use glam::{DVec2, UVec2, dvec2};
-use homunculus::picture::importance::{Field, Layer};
+use homunculus::importance::field::{Field, Layer};
 use homunculus::picture::{Cut, FlatMesh, Picture, Pixels, read_bytes};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgba, RgbaImage};
 use std::io::Cursor;

@@ -2,7 +2,7 @@
 
 use crate::{mesh_of, sentence};
 use homunculus::gallery;
-use homunculus::picture::areas;
+use homunculus::importance::areas;
 
 #[test]
 fn the_gallery_opens() {

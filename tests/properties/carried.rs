@@ -5,9 +5,8 @@ use glam::{DVec3, Vec3A};
 use homunculus::{
     boundary::Boundary,
     importance::{Layer, Sample, Sampling},
-    scene::{MAX_RESOLUTION, MIN_RESOLUTION},
     transfer::Binding,
-    voxel::{Complex, Grid, voxelize},
+    voxel::{Complex, Grid, MAX_RESOLUTION, MIN_RESOLUTION, voxelize},
 };
 use proptest::prelude::*;
 

@@ -3,11 +3,10 @@
 
 use glam::{DVec3, IVec3, Mat3A, Quat, Vec3A};
 use homunculus::{
-    certificate::{Certificate, Surface, certify, certify_way},
-    collision::{Placed, Problem, Shell, contact_step, global_step, grow, guard, guard_step, local_step},
+    certificate::{Certificate, Placed, Shell, Surface, certify, certify_way},
+    collision::{Problem, contact_step, global_step, grow, guard, guard_step, local_step},
     edge::EdgeSolver,
-    film::blend,
-    voxel::Complex,
+    voxel::{Complex, blend},
 };
 use proptest::prelude::*;
 use robust::{Coord3D, orient3d};

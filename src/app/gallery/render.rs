@@ -10,7 +10,7 @@ use super::body::Photographer;
 use super::exhibit::{Exhibit, NAMES};
 use super::{flat, page, sheet};
 use crate::app::{Verdict, cancel, note, say};
-use crate::export::write_atomically;
+use crate::file::write_atomically;
 use crate::gallery::Entry;
 use crate::scene::Source;
 use crate::{Error, Result};

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use image::RgbaImage;
 
 use super::results::Order;
-use crate::collision::Shell;
+use crate::certificate::Shell;
 use crate::film::{Film, Keyframe};
 use crate::record::{self, Camera, Draft, Settings, Subject};
 use crate::schedule::{Observer, Outcome, Progress, Solved};

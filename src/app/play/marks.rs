@@ -5,11 +5,11 @@ use std::sync::Arc;
 use glam::Vec3A;
 
 use crate::certificate::Places;
-use crate::collision::Shell;
-use crate::film::blend;
+use crate::certificate::Shell;
 use crate::session::Lattice;
 use crate::transfer::Binding;
 use crate::voxel::Complex;
+use crate::voxel::blend;
 
 /// λ is looked at in steps of one over this: finer ones are not told apart while the film plays.
 const STEPS: usize = 20;

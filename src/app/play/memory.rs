@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::export::write_atomically;
+use crate::file::write_atomically;
 use crate::scene::Scene;
 use crate::{Error, Result};
 

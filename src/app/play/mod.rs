@@ -147,6 +147,6 @@ fn write_picture(picture: &image::DynamicImage, path: &Path) -> Result<PathBuf> 
         .to_rgb8()
         .write_to(&mut bytes, image::ImageFormat::Png)
         .map_err(|e| Error::Fault(format!("a picture to PNG: {e}")))?;
-    crate::export::write_atomically(path, |file| std::io::Write::write_all(file, bytes.get_ref()))?;
+    crate::file::write_atomically(path, |file| std::io::Write::write_all(file, bytes.get_ref()))?;
     Ok(path.into())
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::Entry;
 use crate::error::{Error, Result};
-use crate::picture::importance::{Field, Layer};
+use crate::importance::field::{Field, Layer};
 use crate::picture::{Cut, Picture, read_bytes};
 
 /// A picture ready to be warped.

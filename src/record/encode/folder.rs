@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use super::target::{Sink, Target};
 use super::{Encoder, Reel, Whole};
-use crate::export::beside;
+use crate::file::beside;
 use crate::{Error, Result};
 
 /// Whether the folder can come to be: not there yet, or empty.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{NamedTempFile, TempDir, TempPath};
 
-use crate::export::beside;
+use crate::file::beside;
 use crate::{Error, Result};
 
 /// Where a file is written until it is whole. Dropped before that, it is gone.

@@ -3,8 +3,8 @@
 use glam::{IVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::{CHUNK, Weights};
-use crate::voxel::{Complex, DIRECTIONS, Dimension, NEIGHBOURS, opposite};
+use super::Weights;
+use crate::voxel::{CHUNK, Complex, DIRECTIONS, Dimension, NEIGHBOURS, opposite};
 
 /// Directions of the flat lattice: x, y and the diagonal. Its rows have these and their opposites.
 const FLAT: usize = 3;

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use rayon::prelude::*;
 
-use super::super::Pixels;
+use crate::picture::Pixels;
 
 /// Largest distance (sRGB, 0..1 a channel) from a colour map at which nearly all of a picture must lie: about what 4:2:0
 /// JPEG at quality 90 does to flat colours. Neighbouring maps are several times further apart over most of their length.

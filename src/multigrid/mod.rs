@@ -12,11 +12,17 @@
 //! Smoother: two damped Jacobi sweeps with Chebyshev weights, the same before and (reversed) after, so that the cycle is
 //! symmetric. Every parallel loop gathers, none scatters: the result has the same bits for any number of threads.
 
+mod conjugate;
+mod level;
+
+pub(crate) use conjugate::preconditioned;
+pub use conjugate::{Solution, conjugate_gradients, dot};
+
 use glam::Vec3A;
 use rayon::prelude::*;
 
-use super::{CHUNK, level::Level};
-use crate::voxel::{Complex, Dimension};
+use crate::voxel::{CHUNK, Complex, Dimension};
+use level::Level;
 
 /// Which Laplacian of C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::super::Pixels;
 use super::Regions;
 use crate::importance::admission::Admission;
+use crate::picture::Pixels;
 use crate::{Error, Result};
 
 /// What a table's numbers mean.

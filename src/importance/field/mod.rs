@@ -13,9 +13,9 @@ use glam::{DVec2, UVec2};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Picture, read};
 use crate::importance::admission::Admission;
 use crate::importance::{IMAGE_RANGE, Range, falloff};
+use crate::picture::{Picture, Pixels, read};
 use crate::{Error, Result};
 
 /// One statement about importance. Layers apply in the order given, each over what is below it.
@@ -213,7 +213,7 @@ impl<'a> Building<'a> {
         Ok(())
     }
 
-    fn regions(&mut self, ids: &Path, pixels: &super::Pixels, table: &Path, text: &[u8], per_area: bool) -> Result<()> {
+    fn regions(&mut self, ids: &Path, pixels: &Pixels, table: &Path, text: &[u8], per_area: bool) -> Result<()> {
         self.check_size(ids, pixels.size())?;
         let joined = regions::join(ids, pixels, &self.picture.domain, table, text, per_area, &mut self.admission)?;
         let set = |(below, region): (&mut f64, &u32)| {

@@ -3,7 +3,8 @@
 use glam::Vec3A;
 use rayon::prelude::*;
 
-use super::{CHUNK, Multigrid, multigrid::CycleMemory};
+use super::{CycleMemory, Multigrid};
+use crate::voxel::CHUNK;
 
 /// What a solve did.
 #[derive(Debug, Clone, Copy, PartialEq)]

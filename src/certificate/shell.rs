@@ -152,7 +152,7 @@ impl Shell {
     }
 
     /// Pairs that may cross in any state between two, node by node.
-    pub(super) fn near_pairs(&self, a: &[Vec3A], b: &[Vec3A]) -> Vec<(u32, u32)> {
+    pub(crate) fn near_pairs(&self, a: &[Vec3A], b: &[Vec3A]) -> Vec<(u32, u32)> {
         match &self.binding {
             None => self.surface.near_pairs(a, b, 0.0),
             Some(binding) => {
@@ -164,7 +164,7 @@ impl Shell {
     }
 
     /// Adds the nodes of crossing pairs among `near` in a state, of those that have a node in `moved` if given.
-    pub(super) fn mark_crossings(
+    pub(crate) fn mark_crossings(
         &self,
         near: &[(u32, u32)],
         nodes: &[Vec3A],
@@ -184,7 +184,7 @@ impl Shell {
 
     /// Adds the nodes of pairs among `near` that are not proven to stay apart on the straight way between two states, and of
     /// flat elements that are not proven to stay positive: of those that have a node in `moved` if given.
-    pub(super) fn mark_unproven(
+    pub(crate) fn mark_unproven(
         &self,
         near: &[(u32, u32)],
         [from, to]: [&[Vec3A]; 2],
