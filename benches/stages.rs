@@ -16,13 +16,15 @@ use common::{RESOLUTIONS, Subject, Table, human_seconds};
 use criterion::{BenchmarkId, Criterion};
 use glam::{Mat3A, Quat, Vec3A};
 use homunculus::{
-    certificate::{Shell, certify},
+    certificate::{Shell, Surfaces, certify},
     collision::{
         Asked, Contacts, Growth, Problem, contact_step, global_step, grow, guard_step, local_step,
-        plugin::{CollisionProblem, Growing, Rotations, Shells, Warped},
+        plugin::{CollisionProblem, Growing, Rotations, Warped},
     },
     edge::EdgeSolver,
-    schedule::{Domain, Settings, Solve, solver},
+    run::{Domain, solver},
+    schedule::Solve,
+    settings::Settings,
     voxel::{Complex, plugin::Lattice, voxelize},
 };
 

@@ -17,7 +17,9 @@ use homunculus::{
     diagnostics::{human_bytes, peak_memory_bytes},
     edge::EdgeSolver,
     reference::{ITERATIONS, Reading, fig5},
-    schedule::{Observer, Outcome, Progress, Reference, Settings, warp},
+    run::warp,
+    run::{Observer, Outcome, Progress},
+    settings::{Reference, Settings},
     voxel::voxelize,
 };
 

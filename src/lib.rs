@@ -8,14 +8,14 @@
 //!
 //! | symbol | what | here |
 //! |---|---|---|
-//! | B, B' | boundary, warped boundary | [`boundary::Boundary`], [`schedule::Frame::positions`] |
+//! | B, B' | boundary, warped boundary | [`boundary::Boundary`], [`run::Frame::positions`] |
 //! | C = (V, E), C_t = (V, T) | nodes, edges, tetrahedra of the voxelized inside; lattice of cell size h | [`voxel::Complex`] |
 //! | F, f | importance: linear size factor asked for, > 0 | [`importance::Stack`], [`importance::plugin::Importance`] |
 //! | V' | linear solution (Eq. 1) | [`edge::plugin::LinearSolution`] |
 //! | λ | growth, 0 = rest, 1 = all of it | [`collision::Growth`] |
 //! | V'' | warped nodes (Eq. 2) | [`collision::plugin::Warped`] |
 //! | r_i | contact radius | [`collision::Asked::radius`] |
-//! | μ | fidelity: 0 keeps shape, 1 reaches the asked size | [`schedule::Settings::fidelity`] |
+//! | μ | fidelity: 0 keeps shape, 1 reaches the asked size | [`settings::Settings::fidelity`] |
 //! | α β γ δ | barycentric weights of a boundary vertex | [`transfer::Binding`] |
 //!
 //! | stage | section | in | out |
@@ -28,7 +28,7 @@
 //! | [`film`] | – | certified states | what is played, exported, recorded |
 //! | [`transfer`] | 3.5 | B, V'' | B' |
 //!
-//! [`mod@reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once and runs it.
+//! [`mod@reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once, [`run`] runs it.
 //!
 //! # What is promised, and what carries it
 //!
@@ -64,9 +64,11 @@ pub mod picture;
 #[cfg(feature = "record")]
 pub mod record;
 pub mod reference;
+pub mod run;
 pub mod scene;
 pub mod schedule;
 pub mod session;
+pub mod settings;
 pub mod transfer;
 #[cfg(feature = "render")]
 pub mod view;

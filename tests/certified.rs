@@ -10,7 +10,7 @@ use glam::Vec3A;
 use homunculus::{
     boundary::{self, Boundary},
     certificate::Surface,
-    schedule,
+    run,
 };
 
 #[test]
@@ -52,7 +52,7 @@ fn every_frame_of_every_mesh_is_certified() {
 }
 
 /// Pairs of triangles that cross in the blends of neighbouring frames, judged from the written surfaces alone.
-fn crossings_between(boundary: &Boundary, frames: &[schedule::Frame]) -> usize {
+fn crossings_between(boundary: &Boundary, frames: &[run::Frame]) -> usize {
     let welded = boundary.welded();
     let identities = boundary.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
     let rest: Vec<Vec3A> = frames[0].positions.iter().map(|p| p.as_vec3a()).collect();

@@ -10,7 +10,7 @@ use glam::DVec3;
 use homunculus::{
     boundary::{self, Boundary},
     importance::Layer,
-    schedule::Outcome,
+    run::Outcome,
 };
 
 /// Nodes below which a loop is a single task, for which any number of threads is the same anyway.

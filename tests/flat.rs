@@ -9,9 +9,12 @@ use glam::{DVec2, DVec3, UVec2, Vec3A};
 use homunculus::boundary::{Boundary, Regions};
 use homunculus::importance::field::{Field, Layer};
 use homunculus::picture::{self, Cut, FlatMesh, Picture};
-use homunculus::schedule::{Domain, Observer, Progress, Settings, Solved, solve_domain};
 use homunculus::voxel::Flat;
 use homunculus::voxel::blend;
+use homunculus::{
+    run::{Domain, Observer, Progress, Solved, solve},
+    settings::Settings,
+};
 
 struct Patient;
 
@@ -223,7 +226,9 @@ fn no_tip_passes_another_between_two_looks() {
     let solved = solve(flat(&picture, &field), Settings { keys: 8, ..settings(320, 1.0) });
     let crossings = |from: &[Vec3A], to: &[Vec3A]| -> usize {
         let states = (0..=32).map(|part| blend(from, to, part as f32 / 32.0));
-        states.flat_map(|state| solved.shells.iter().map(move |shell| shell.crossings(&state).len())).sum()
+        states
+            .flat_map(|state| Checked::from(&solved.surfaces).iter().map(move |shell| shell.crossings(&state).len()))
+            .sum()
     };
     let keyframes = solved.film.keyframes();
     for pair in keyframes.windows(2) {

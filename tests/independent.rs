@@ -13,7 +13,8 @@ use homunculus::{
     boundary::{self, Boundary},
     export,
     importance::{Layer, Stack},
-    schedule::{self, Reference, Settings},
+    run,
+    settings::{Reference, Settings},
 };
 
 /// Meshes that are free of self-intersections, and some that are not, for which nothing is promised.
@@ -85,7 +86,7 @@ fn sabotage_what_eq1_lets_cross_is_found() {
     let stack = Stack::load(&layers, 1.0, false, &bars, Path::new("")).unwrap();
     let last = |reference| {
         let settings = Settings { resolution: 16, fidelity: 0.5, keys: 2, reference };
-        let outcome = schedule::warp(&bars, &stack, &settings, &Quiet).unwrap();
+        let outcome = run::warp(&bars, &stack, &settings, &Quiet).unwrap();
         outcome.frames.last().unwrap().positions.clone()
     };
     let out = tempfile::tempdir().unwrap();

@@ -14,7 +14,9 @@ use homunculus::{
     Error, Result,
     boundary::Boundary,
     importance::{Layer, Stack},
-    schedule::{self, Outcome, Settings},
+    run,
+    run::Outcome,
+    settings::Settings,
     voxel::{MAX_RESOLUTION, MIN_RESOLUTION},
 };
 
@@ -179,8 +181,8 @@ fn sabotage_eq1_alone_and_a_lost_vertex_are_found_at_fault() {
     let bars = bars();
     let layers = [Layer::Sphere { centre: [1.25, 0.5, 1.5], radius: 100.0, value: 3.0 }];
     let stack = Stack::load(&layers, 1.0, false, &bars, Path::new("")).unwrap();
-    let settings = Settings { resolution: 12, fidelity: 0.5, keys: 2, reference: Some(schedule::Reference::Eq1) };
-    let outcome = schedule::warp(&bars, &stack, &settings, &common::Quiet).unwrap();
+    let settings = Settings { resolution: 12, fidelity: 0.5, keys: 2, reference: Some(Reference::Eq1) };
+    let outcome = run::warp(&bars, &stack, &settings, &common::Quiet).unwrap();
     assert!(fault(&bars, &outcome).unwrap_err().contains("crossings"));
     let mut outcome = is_certified(&bars, 12);
     outcome.frames[1].positions[3].x = f64::NAN;

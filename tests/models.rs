@@ -10,7 +10,11 @@ use homunculus::boundary::{Attribute, Boundary};
 use homunculus::gallery::models::{Figure, figures};
 use homunculus::gallery::{self, with_values};
 use homunculus::importance::{Layer, Stack};
-use homunculus::schedule::{self, Outcome, Reference, Settings};
+use homunculus::{
+    run,
+    run::Outcome,
+    settings::{Reference, Settings},
+};
 
 /// Cells along the longest side in these tests: coarse, so that all nine take a minute.
 const COARSE: u32 = 36;
@@ -27,7 +31,7 @@ fn warp(boundary: &Boundary, resolution: u32, keys: usize, reference: Option<Ref
     let layers = [Layer::Attribute { name: "importance".into(), range: None }];
     let stack = Stack::load(&layers, 1.0, false, boundary, Path::new("")).expect("the attribute is there");
     let settings = Settings { resolution, fidelity: 0.8, keys, reference };
-    schedule::warp(boundary, &stack, &settings, &common::Quiet).expect("it can be warped")
+    run::warp(boundary, &stack, &settings, &common::Quiet).expect("it can be warped")
 }
 
 /// What is wrong with a surface that should be one closed, oriented manifold; empty when nothing is.

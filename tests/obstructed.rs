@@ -13,7 +13,9 @@ use glam::{DVec3, IVec3, dvec3};
 use homunculus::{
     boundary::{self, Boundary, Regions},
     importance::{Layer, Stack},
-    schedule::{self, Outcome, Reference, Settings},
+    run,
+    run::Outcome,
+    settings::{Reference, Settings},
 };
 
 /// What is asked to grow counts as grown above this mean size.
@@ -215,7 +217,7 @@ fn sabotage_eq1_alone_is_found_at_fault() {
     let boundary = marked(boundary, &layers);
     let stack = Stack::load(&layers, 1.0, false, &boundary, "".as_ref()).unwrap();
     let settings = Settings { resolution: 24, fidelity: 0.5, keys: 2, reference: Some(Reference::Eq1) };
-    let outcome = schedule::warp(&boundary, &stack, &settings, &Quiet).unwrap();
+    let outcome = run::warp(&boundary, &stack, &settings, &Quiet).unwrap();
     assert!(fault(&outcome).unwrap_err().contains("not certified"));
 }
 

@@ -11,8 +11,11 @@ use std::time::Instant;
 use homunculus::boundary::{Attribute, Regions};
 use homunculus::gallery::{self, Entry, models};
 use homunculus::importance::{Layer, Stack};
-use homunculus::schedule::{Domain, Outcome, Reference, Settings, solve_domain};
 use homunculus::voxel::Flat;
+use homunculus::{
+    run::{Domain, Outcome, solve},
+    settings::{Reference, Settings},
+};
 
 /// Cells along the longest side, coarse: all of them together take half a minute.
 const COARSE_BODY: u32 = 32;

@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 
 use homunculus::boundary::Boundary;
 use homunculus::importance::{Layer, Stack};
-use homunculus::schedule::{self, Settings};
 use homunculus::session::{Phase, Session, Snapshot, Subject};
+use homunculus::{run, settings::Settings};
 
 /// Longest wait for anything here; a fault of the session, not a slow machine, is what reaches it.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -62,7 +62,7 @@ fn ends_with_the_film_that_the_command_line_makes() {
     let (session, boundary) = open(24, 2.0);
     let done = wait(&session, is_at_rest);
     assert_eq!(done.phase, Phase::Done, "{:?}", done.error);
-    let expected = schedule::warp(&boundary, &stack(&boundary, 2.0), &settings(24), &common::Quiet).unwrap();
+    let expected = run::warp(&boundary, &stack(&boundary, 2.0), &settings(24), &common::Quiet).unwrap();
     let outcome = done.outcome.as_ref().unwrap();
     assert_eq!(done.film.len(), expected.frames.len());
     for (found, expected) in outcome.frames.iter().zip(&expected.frames) {
@@ -112,7 +112,7 @@ fn a_change_goes_on_from_the_last_valid_state_and_ends_certified() {
     assert_eq!(done.phase, Phase::Done);
     assert!(done.film_is_current && done.outcome.as_ref().unwrap().certificate.certified());
     // And the film is the one of the new importance, as if nothing had been before.
-    let fresh = schedule::warp(&boundary, &stack(&boundary, 3.0), &settings(24), &common::Quiet).unwrap();
+    let fresh = run::warp(&boundary, &stack(&boundary, 3.0), &settings(24), &common::Quiet).unwrap();
     let error = (done.outcome.as_ref().unwrap().fidelity.p95 - fresh.fidelity.p95).abs();
     assert!(error < 0.02, "{error}");
 }

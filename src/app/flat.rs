@@ -24,7 +24,6 @@ use crate::importance::field::Field;
 use crate::picture::animate::{self, Frame};
 use crate::picture::render::{Canvas, Painter, mark};
 use crate::scene::Scene;
-use crate::schedule::{self, Domain, Solved};
 use crate::voxel::Complex;
 use crate::voxel::blend_places;
 use crate::{Error, Result};
@@ -35,6 +34,10 @@ use crate::{
 use crate::{
     importance::areas,
     picture::{FlatMesh, Picture},
+};
+use crate::{
+    run,
+    run::{Domain, Solved},
 };
 
 /// Frames of an animated picture in each second: smooth enough for growth, and half the size of a film's.
@@ -84,7 +87,7 @@ pub(super) fn subject(
 fn solve(loaded: &LoadedPicture, quiet: bool) -> Result<Solved> {
     let watcher = progress::watcher(quiet);
     let domain = Domain::picture(Arc::new(loaded.flat.clone()), loaded.settings.clone());
-    let solved = schedule::solve_domain(domain, &watcher);
+    let solved = run::solve(domain, &watcher);
     watcher.finish();
     solved
 }
@@ -100,7 +103,7 @@ fn report(scene: &Scene, loaded: &LoadedPicture, solved: &Solved, drawn: &Drawn)
 pub(super) struct Drawn<'a> {
     picture: &'a Picture,
     boundary: &'a Boundary,
-    frames: &'a [schedule::Frame],
+    frames: &'a [run::Frame],
     /// What it is drawn on, in pixels with y downwards.
     pub mesh: FlatMesh,
     /// By rising λ, in pixels with y downwards.
@@ -109,7 +112,7 @@ pub(super) struct Drawn<'a> {
 
 impl<'a> Drawn<'a> {
     /// Of the mesh the engine drew it on, and its states.
-    pub fn new(picture: &'a Picture, boundary: &'a Boundary, frames: &'a [schedule::Frame]) -> Self {
+    pub fn new(picture: &'a Picture, boundary: &'a Boundary, frames: &'a [run::Frame]) -> Self {
         let height = f64::from(picture.size.y);
         let places = |positions: &[glam::DVec3]| positions.iter().map(|p| DVec2::new(p.x, height - p.y)).collect();
         let mesh = FlatMesh { rest: places(&boundary.positions), triangles: boundary.triangles.clone() };

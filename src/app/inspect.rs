@@ -11,9 +11,12 @@ use crate::boundary::{Attribute, Boundary};
 use crate::diagnostics::human_bytes;
 use crate::export::report::{DomainReport, InputReport};
 use crate::picture::Pixels;
-use crate::schedule::{self, DomainSummary, InputSummary};
 use crate::voxel::Flat;
 use crate::{Error, Result};
+use crate::{
+    run,
+    run::{DomainSummary, InputSummary},
+};
 use crate::{
     scene::Source,
     voxel::{check_flat_resolution, check_resolution},
@@ -86,7 +89,7 @@ pub(super) fn run(options: &InspectOptions) -> Result<Verdict> {
             let resolution = options.resolution.unwrap_or(RESOLUTION);
             check_resolution(resolution)?;
             let boundary = load::open(&options.source)?;
-            let (input, domain) = schedule::inspect(&boundary, resolution)?;
+            let (input, domain) = run::inspect(&boundary, resolution)?;
             Inspection::of(&options.source, &boundary, &input, &domain)
         }
     };
@@ -106,7 +109,7 @@ fn of_picture(options: &InspectOptions, source: PictureSource) -> Result<Inspect
     let name = options.source.to_string();
     let (picture, own) = source.read(&name, options.background.as_deref())?;
     let flat = Flat { name, size: picture.size, inside: picture.domain.clone(), ..Flat::default() };
-    let (boundary, input, domain) = schedule::inspect_picture(&flat, resolution)?;
+    let (boundary, input, domain) = run::inspect_picture(&flat, resolution)?;
     let regions = own.and_then(|field| field.regions).map_or_else(Vec::new, |regions| regions.names);
     let report = PictureReport {
         width: picture.size.x,

@@ -13,7 +13,7 @@ use crate::importance::{Layer, Stack};
 use crate::paint::Ground;
 use crate::picture::{self, Cut, Picture};
 use crate::scene::{Scene, Source};
-use crate::schedule::Settings;
+use crate::settings::Settings;
 use crate::voxel::Flat;
 use crate::{Error, Result, gallery, paint};
 

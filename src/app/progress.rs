@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{cancel, note};
-use crate::schedule::{Observer, Progress};
+use crate::run::{Observer, Progress};
 
 /// Steps of the bar; a thousand is finer than a terminal is wide.
 const STEPS: u64 = 1000;

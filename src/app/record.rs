@@ -15,7 +15,7 @@ use crate::export::report::Report;
 use crate::importance::Layer;
 use crate::record::{self, Account, Camera, Draft, Settings, Subject, sidecar};
 use crate::scene::Scene;
-use crate::{Error, Result, schedule};
+use crate::{Error, Result, run, run::Domain};
 
 /// Film the growth, or take a picture of it
 ///
@@ -225,10 +225,12 @@ pub(super) fn run(order: RecordOrder) -> Result<Verdict> {
 fn body(scene: &Scene, options: &SceneOptions) -> Result<(Subject, Report)> {
     let Loaded { boundary, stack, settings, warnings } = load::load(scene, options)?;
     let watcher = progress::watcher(options.quiet);
-    let solved = schedule::solve(&boundary, &stack, &settings, &watcher);
+    let clamped = stack.clamped();
+    let solved = run::solve(Domain::body(Arc::new(boundary), Arc::new(stack), settings.clone()), &watcher);
     watcher.finish();
-    let (subject, outcome) = Subject::new(Arc::new(boundary), solved?);
-    Ok((subject, Report::of(scene, &settings, stack.clamped(), &outcome, warnings)))
+    let solved = solved?;
+    let (subject, outcome) = Subject::new(solved.boundary.clone(), solved);
+    Ok((subject, Report::of(scene, &settings, clamped, &outcome, warnings)))
 }
 
 /// Whether all files can come to lie where they are wanted.

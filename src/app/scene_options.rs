@@ -7,7 +7,7 @@ use clap::{ArgMatches, Args, ValueEnum};
 
 use crate::gallery;
 use crate::importance::{Layer, Range};
-use crate::schedule::Reference;
+use crate::settings::Reference;
 use crate::{Error, Result};
 use crate::{
     scene::{Draft, MAX_KEYS, Scene, Source},

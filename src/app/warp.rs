@@ -10,8 +10,8 @@ use crate::boundary::Boundary;
 use crate::export::report::Report;
 use crate::export::{self, GrowthFrame};
 use crate::importance;
+use crate::run::{self, Outcome};
 use crate::scene::Scene;
-use crate::schedule::{self, Outcome};
 use crate::{Error, Result};
 
 /// Warps, writes and says how it went.
@@ -30,7 +30,7 @@ pub(super) fn run(order: WarpOrder) -> Result<Verdict> {
     let Loaded { boundary, stack, settings, warnings } = load::load(&scene, &options.scene)?;
 
     let watcher = progress::watcher(options.scene.quiet);
-    let outcome = schedule::warp(&boundary, &stack, &settings, &watcher);
+    let outcome = run::warp(&boundary, &stack, &settings, &watcher);
     watcher.finish();
     let outcome = outcome?;
     if cancel::asked() {

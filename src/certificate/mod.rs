@@ -16,11 +16,13 @@ mod elements;
 mod fidelity;
 mod motion;
 mod place;
+pub mod plugin;
 mod predicates;
 mod segments;
 mod shell;
 mod star;
 mod surface;
+mod surfaces;
 mod tree;
 
 pub(crate) use elements::{cell_stays_positive, flat_stays_positive};
@@ -29,6 +31,8 @@ pub use place::Places;
 pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};
 pub use shell::{Placed, Shell};
 pub use surface::Surface;
+pub(crate) use surfaces::BySurface;
+pub use surfaces::{Checked, Surfaces};
 pub use tree::{Bounds, Posed, Tree};
 
 use glam::{DVec3, Vec3A};
@@ -84,50 +88,58 @@ impl Certificate {
     }
 }
 
-/// Checks a state: all elements, and all pairs of faces of the given shells (the first is the complex's skin).
-pub fn certify(complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Certificate {
-    check(complex, shells, positions, |shell| shell.crossings(positions))
+/// Checks a state: all elements, and all pairs of faces of the surfaces.
+pub fn certify<'a>(complex: &Complex, surfaces: impl Into<Checked<'a>>, positions: &[Vec3A]) -> Certificate {
+    check(complex, surfaces.into(), positions, |shell| shell.crossings(positions))
 }
 
 /// Checks the rest state like [`certify`]. What of a surface in space crosses at rest was found when the shell was made,
 /// and is inherited.
-pub fn certify_rest(complex: &Complex, shells: &[Shell]) -> Certificate {
-    check(complex, shells, &complex.rest, |shell| shell.crossings_at_rest(&complex.rest))
+pub fn certify_rest<'a>(complex: &Complex, surfaces: impl Into<Checked<'a>>) -> Certificate {
+    check(complex, surfaces.into(), &complex.rest, |shell| shell.crossings_at_rest(&complex.rest))
 }
 
 fn check(
     complex: &Complex,
-    shells: &[Shell],
+    surfaces: Checked,
     positions: &[Vec3A],
     crossings: impl Fn(&Shell) -> Vec<(u32, u32)> + Sync + Send,
 ) -> Certificate {
-    let (elements, crossings): (_, Vec<_>) =
-        rayon::join(|| elements::check(complex, positions), || shells.par_iter().map(crossings).collect());
-    conclude(complex, shells, positions, elements, &crossings)
+    let (elements, (skin, written)) = rayon::join(
+        || elements::check(complex, positions),
+        || rayon::join(|| crossings(surfaces.skin), || surfaces.written.map(&crossings)),
+    );
+    conclude(complex, surfaces, positions, elements, &BySurface { skin, written })
 }
 
 /// Checks a state like [`certify`], and the straight way to it from a valid one: whether every blend of the two is proven
 /// to be valid, at every instant. What keeps apart on the way does not come to lie within another either.
-pub fn certify_way(complex: &Complex, shells: &[Shell], from: &Placed, to: &Placed) -> (Certificate, bool) {
+pub fn certify_way<'a>(
+    complex: &Complex,
+    surfaces: impl Into<Checked<'a>>,
+    from: &Placed,
+    to: &Placed,
+) -> (Certificate, bool) {
+    let surfaces = surfaces.into();
     let ((elements, unfolded), found) =
-        rayon::join(|| elements::check_way(complex, from.nodes(), to.nodes()), || to.crossings_from(from, shells));
-    let (crossings, clear): (Vec<_>, Vec<bool>) = found.into_iter().unzip();
-    let clear = unfolded && clear.into_iter().all(|clear| clear) && to.stays_unfolded_from(from, shells);
-    let certificate = conclude(complex, shells, to.nodes(), elements, &crossings);
+        rayon::join(|| elements::check_way(complex, from.nodes(), to.nodes()), || to.crossings_from(from, surfaces));
+    let clear = unfolded && found.iter().all(|(_, clear)| *clear) && to.stays_unfolded_from(from, surfaces);
+    let crossings = BySurface { skin: found.skin.0, written: found.written.map(|(crossings, _)| crossings) };
+    let certificate = conclude(complex, surfaces, to.nodes(), elements, &crossings);
     let clear = clear && certificate.certified();
     (certificate, clear)
 }
 
-/// What the findings on a state come to. `crossings` are by shell.
+/// What the findings on a state come to.
 fn conclude(
     complex: &Complex,
-    shells: &[Shell],
+    surfaces: Checked,
     positions: &[Vec3A],
     elements: elements::Check,
-    crossings: &[Vec<(u32, u32)>],
+    crossings: &BySurface<Vec<(u32, u32)>>,
 ) -> Certificate {
-    let inverted = shells.iter().map(|s| s.inverted(positions).len()).sum::<usize>();
-    let crossing_at = shells.iter().zip(crossings).find_map(|(shell, pairs)| {
+    let inverted = surfaces.iter().map(|s| s.inverted(positions).len()).sum::<usize>();
+    let crossing_at = surfaces.iter().zip(crossings.iter()).find_map(|(shell, pairs)| {
         let &(triangle, _) = pairs.first()?;
         Some(shell.nodes_of_triangle(triangle))
     });
@@ -142,9 +154,9 @@ fn conclude(
     };
     Certificate {
         inverted: elements.inverted + inverted,
-        crossings: crossings.first().map_or(0, Vec::len),
+        crossings: crossings.skin.len(),
         enclosed: enclosed_solids(complex, positions).len(),
-        surface_crossings: crossings.iter().skip(1).map(Vec::len).sum(),
+        surface_crossings: crossings.written.as_ref().map_or(0, Vec::len),
         min_volume_ratio: elements.least,
         worst,
     }

@@ -7,10 +7,9 @@
 
 use glam::{DVec3, Vec3A};
 
-use super::{elements, enclosed_solids};
+use super::{Checked, Shell, elements, enclosed_solids};
 use crate::{
     boundary::Boundary,
-    certificate::Shell,
     transfer::CellIndex,
     voxel::{Complex, Dimension},
 };
@@ -31,12 +30,12 @@ impl Places {
         Self { cells: boundary.triangles.iter().map(|t| t.map(|v| of_vertex[v as usize])).collect() }
     }
 
-    /// The triangles of the boundary that are faulty in a state, rising. `shells` as for [`certify`](super::certify): the
-    /// complex's skin, then the boundary.
+    /// The triangles of the boundary that are faulty in a state, rising. `surfaces` as for [`certify`](super::certify).
     ///
     /// Empty exactly where the state is certified, unless a fault lies where no triangle has a corner, or the outline of a
     /// picture's mesh crosses itself where that of its cells does not.
-    pub fn faulty(&self, complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Vec<u32> {
+    pub fn faulty<'a>(&self, complex: &Complex, surfaces: impl Into<Checked<'a>>, positions: &[Vec3A]) -> Vec<u32> {
+        let surfaces = surfaces.into();
         let mut is_bad = vec![false; complex.cells.len()];
         for cell in elements::inverted_cells(complex, positions) {
             is_bad[cell] = true;
@@ -47,7 +46,7 @@ impl Places {
                 *bad |= enclosed.contains(solid);
             }
         }
-        for (s, t) in shells.first().map(|skin| skin.crossings(positions)).unwrap_or_default() {
+        for (s, t) in surfaces.skin.crossings(positions) {
             for face in [s, t] {
                 is_bad[complex.cell_of_face[face as usize] as usize] = true;
             }
@@ -55,11 +54,11 @@ impl Places {
         let mut faulty: Vec<u32> = (0..self.cells.len() as u32)
             .filter(|&t| self.cells[t as usize].iter().any(|&c| is_bad.get(c as usize).is_some_and(|bad| *bad)))
             .collect();
-        for shell in shells.iter().skip(1) {
+        if let Some(written) = surfaces.written {
             match complex.dimension {
                 // Crossings of a picture's outline are lines, not triangles.
-                Dimension::Two => faulty.extend(shell.inverted(positions)),
-                Dimension::Three => faulty.extend(shell.crossings(positions).into_iter().flat_map(|(s, t)| [s, t])),
+                Dimension::Two => faulty.extend(written.inverted(positions)),
+                Dimension::Three => faulty.extend(written.crossings(positions).into_iter().flat_map(|(s, t)| [s, t])),
             }
         }
         faulty.sort_unstable();
@@ -68,10 +67,11 @@ impl Places {
     }
 
     /// The same to be marked in a drawing: of a picture with as many cells around its crossings as it takes to be seen.
-    pub fn to_be_seen(&self, complex: &Complex, shells: &[Shell], positions: &[Vec3A]) -> Vec<u32> {
-        let mut faulty = self.faulty(complex, shells, positions);
-        if let Some(skin) = shells.first().filter(|_| complex.dimension == Dimension::Two) {
-            faulty.extend(around_crossings(complex, skin, positions));
+    pub fn to_be_seen<'a>(&self, complex: &Complex, surfaces: impl Into<Checked<'a>>, positions: &[Vec3A]) -> Vec<u32> {
+        let surfaces = surfaces.into();
+        let mut faulty = self.faulty(complex, surfaces, positions);
+        if complex.dimension == Dimension::Two {
+            faulty.extend(around_crossings(complex, surfaces.skin, positions));
             faulty.sort_unstable();
             faulty.dedup();
         }

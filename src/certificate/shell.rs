@@ -1,13 +1,13 @@
 //! Surfaces carried by the nodes that must not cross themselves.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, sync::Arc};
 
 use glam::Vec3A;
 use rayon::prelude::*;
 
+use super::{BySurface, Checked, Surface, flat_stays_positive, is_positive};
 use crate::{
     boundary::{Boundary, Sets},
-    certificate::{Surface, flat_stays_positive, is_positive},
     transfer::Binding,
     voxel::{Complex, Dimension},
 };
@@ -17,7 +17,7 @@ use crate::{
 pub struct Shell {
     surface: Surface,
     /// How its vertices follow the nodes; `None` where they are the nodes.
-    binding: Option<Binding>,
+    binding: Option<Arc<Binding>>,
     /// How many pairs of triangles crossed at rest already: what the input brought is not ours to mend. Triangles that
     /// touch but for rounding are treated alike.
     inherited: usize,
@@ -57,7 +57,7 @@ impl Shell {
     }
 
     /// The flat mesh a picture is drawn on: its outline must not cross itself, its triangles must not turn over.
-    fn flat(boundary: &Boundary, binding: Binding, complex: &Complex) -> Self {
+    fn flat(boundary: &Boundary, binding: Arc<Binding>, complex: &Complex) -> Self {
         let mut directed: Vec<[u32; 2]> =
             boundary.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
         directed.sort_unstable();
@@ -74,7 +74,7 @@ impl Shell {
     ///
     /// B' is made of flat triangles between moved vertices, while the complex bends between them: that the complex does
     /// not cross itself is not enough where triangles are larger than cells.
-    pub fn boundary(boundary: &Boundary, binding: Binding, complex: &Complex) -> Self {
+    pub fn boundary(boundary: &Boundary, binding: Arc<Binding>, complex: &Complex) -> Self {
         if complex.dimension == Dimension::Two {
             return Self::flat(boundary, binding, complex);
         }
@@ -251,7 +251,7 @@ impl Shell {
         let ends = [from, to].map(|nodes| self.positions(nodes).into_owned());
         let ends = [&*ends[0], &*ends[1]];
         let doubtful = self.doubtful_corners(self.surface.near_pairs(ends[0], ends[1], 0.0), ends, |_| true);
-        self.binding.as_mut().map_or_else(Vec::new, |binding| binding.straighten(doubtful.into_iter()))
+        self.binding.as_mut().map_or_else(Vec::new, |binding| Arc::make_mut(binding).straighten(doubtful.into_iter()))
     }
 
     /// Whether a flat surface is proven to stay as it should be on the straight way between two states, as far as the
@@ -287,7 +287,7 @@ impl Shell {
     }
 
     /// How its vertices follow the nodes, where they are not the nodes.
-    pub fn binding(&self) -> Option<&Binding> {
+    pub fn binding(&self) -> Option<&Arc<Binding>> {
         self.binding.as_ref()
     }
 
@@ -314,22 +314,19 @@ impl Shell {
     }
 }
 
-/// A state with the surfaces it carries: the end of one way is the beginning of the next.
+/// A state with the surface it carries: the end of one way is the beginning of the next.
 #[derive(Debug)]
 pub struct Placed {
     nodes: Vec<Vec3A>,
-    /// `[shells]` vertices; none where they are the nodes.
-    carried: Vec<Option<Vec<Vec3A>>>,
+    /// Vertices of the written surface, where there is one.
+    written: Option<Vec<Vec3A>>,
 }
 
 impl Placed {
-    /// Places the vertices of all shells.
-    pub fn new(shells: &[Shell], nodes: Vec<Vec3A>) -> Self {
-        let place = |shell: &Shell| match shell.positions(&nodes) {
-            Cow::Borrowed(_) => None,
-            Cow::Owned(vertices) => Some(vertices),
-        };
-        Self { carried: shells.iter().map(place).collect(), nodes }
+    /// Places the vertices of all surfaces.
+    pub fn new<'a>(surfaces: impl Into<Checked<'a>>, nodes: Vec<Vec3A>) -> Self {
+        let written = surfaces.into().written.map(|written| written.positions(&nodes).into_owned());
+        Self { written, nodes }
     }
 
     /// `[nodes]` in cells.
@@ -342,23 +339,27 @@ impl Placed {
         self.nodes
     }
 
-    fn vertices(&self, shell: usize) -> &[Vec3A] {
-        self.carried[shell].as_deref().unwrap_or(&self.nodes)
+    /// Vertices of the written surface.
+    fn written(&self) -> &[Vec3A] {
+        self.written.as_deref().unwrap_or(&self.nodes)
     }
 
-    /// Whether the triangles of flat surfaces are proven to stay positive on the straight way here.
-    pub(crate) fn stays_unfolded_from(&self, from: &Self, shells: &[Shell]) -> bool {
-        shells.iter().enumerate().all(|(k, shell)| {
-            let ends = [from.vertices(k), self.vertices(k)];
-            shell.flat_elements.par_iter().with_min_len(2048).all(|t| stays_positive(t, ends))
+    /// Whether the triangles of a flat surface are proven to stay positive on the straight way here.
+    pub(crate) fn stays_unfolded_from(&self, from: &Self, surfaces: Checked) -> bool {
+        surfaces.written.is_none_or(|written| {
+            let ends = [from.written(), self.written()];
+            written.flat_elements.par_iter().with_min_len(2048).all(|t| stays_positive(t, ends))
         })
     }
 
-    /// By shell: crossings of this state that were not there at rest, and whether it is proven that there are none at any
+    /// By surface: crossings of this state that were not there at rest, and whether it is proven that there are none at any
     /// instant of the straight way to it.
-    pub(crate) fn crossings_from(&self, from: &Self, shells: &[Shell]) -> Vec<(Vec<(u32, u32)>, bool)> {
-        let ends = |k: usize| [from.vertices(k), self.vertices(k)];
-        shells.par_iter().enumerate().map(|(k, shell)| shell.crossings_after(ends(k))).collect()
+    pub(crate) fn crossings_from(&self, from: &Self, surfaces: Checked) -> BySurface<(Vec<(u32, u32)>, bool)> {
+        let (skin, written) = rayon::join(
+            || surfaces.skin.crossings_after([&from.nodes, &self.nodes]),
+            || surfaces.written.map(|written| written.crossings_after([from.written(), self.written()])),
+        );
+        BySurface { skin, written }
     }
 }
 

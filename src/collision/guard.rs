@@ -10,7 +10,7 @@ use glam::Vec3A;
 use rayon::prelude::*;
 
 use crate::{
-    certificate::{Shell, cell_stays_positive, enclosed_solids, is_positive},
+    certificate::{BySurface, Checked, cell_stays_positive, enclosed_solids, is_positive},
     voxel::{CHUNK, Complex, Dimension, blend},
 };
 
@@ -55,23 +55,24 @@ pub enum Watch {
 ///
 /// `holds` is `[nodes]` how often each node's step was halved, or empty: what had to be held in the last step starts a
 /// little freer in this one, instead of all over again.
-pub fn guard(
+pub fn guard<'a>(
     complex: &Complex,
-    shells: &mut [Shell],
+    surfaces: impl Into<Checked<'a>>,
     size: &[f32],
     current: &[Vec3A],
     proposed: &mut [Vec3A],
     watch: Watch,
     holds: &mut Vec<u8>,
 ) -> Guarded {
-    let near: Vec<Vec<(u32, u32)>> = shells.iter_mut().map(|s| s.near_pairs(current, proposed)).collect();
+    let surfaces = surfaces.into();
+    let near = surfaces.each(|shell| shell.near_pairs(current, proposed));
     let full: Vec<Vec3A> = proposed.to_vec();
     let mut guarded = Guarded::default();
     holds.resize(complex.nodes(), 0);
     for hold in holds.iter_mut() {
         *hold = hold.saturating_sub(1);
     }
-    let step = Step { complex, shells, near: &near, size, current, watch };
+    let step = Step { complex, surfaces, near: &near, size, current, watch };
     for whole in WHOLE_STEPS {
         let target =
             if whole < 1.0 { Cow::Owned(blend(current, &full, whole)) } else { Cow::Borrowed(full.as_slice()) };
@@ -88,8 +89,8 @@ pub fn guard(
 /// A step to be made valid.
 struct Step<'a> {
     complex: &'a Complex,
-    shells: &'a [Shell],
-    near: &'a [Vec<(u32, u32)>],
+    surfaces: Checked<'a>,
+    near: &'a BySurface<Vec<(u32, u32)>>,
     size: &'a [f32],
     current: &'a [Vec3A],
     watch: Watch,
@@ -147,10 +148,10 @@ impl Step<'_> {
     /// broken; what keeps apart on all of it does not come to lie within another either.
     fn faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
         let mut marked = bad_cells(self.complex, self.size, self.current, proposed, moved);
-        let shells = self.shells.iter().zip(self.near);
+        let surfaces = self.surfaces.iter().zip(self.near.iter());
         if self.watch == Watch::End && self.complex.dimension == Dimension::Three {
             marked.extend(self.enclosed(proposed));
-            for (shell, near) in shells {
+            for (shell, near) in surfaces {
                 shell.mark_crossings(near, proposed, moved, &mut marked);
             }
             return marked;
@@ -164,7 +165,7 @@ impl Step<'_> {
             let cells = self.complex.corners.par_iter().with_min_len(CELLS_PER_TASK);
             marked.extend(cells.filter(is_doubtful).flatten_iter().collect::<Vec<_>>());
         }
-        for (shell, near) in shells {
+        for (shell, near) in surfaces {
             shell.mark_unproven(near, [self.current, proposed], moved, &mut marked);
         }
         marked

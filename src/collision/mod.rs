@@ -21,12 +21,13 @@ pub mod growth;
 pub mod guard;
 pub mod local;
 pub mod plugin;
+mod trail;
 
 use glam::{DMat3, DVec3, Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
-    certificate::Shell,
+    certificate::Checked,
     importance::cell_importance,
     multigrid::{Multigrid, Weights, dot, preconditioned},
     voxel::{CHUNK, Complex, Dimension},
@@ -35,6 +36,7 @@ pub use contact::Contacts;
 pub use flow::Flow;
 pub use growth::Growth;
 pub use guard::{Guarded, Watch};
+pub use trail::Trail;
 
 /// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing
 /// (measured: the rotations, not the solve, are what converges slowly).
@@ -236,10 +238,10 @@ fn remove_rigid_motion(positions: &[Vec3A], step: &mut [Vec3A]) {
 
 /// Guard: takes of the proposed step what stays injective. `holds` is kept from step to step. Returns the new
 /// positions' largest motion in cells and what was held back.
-pub fn guard_step(
+pub fn guard_step<'a>(
     complex: &Complex,
     asked: &Asked,
-    shells: &mut [Shell],
+    surfaces: impl Into<Checked<'a>>,
     positions: &mut Vec<Vec3A>,
     mut proposed: Vec<Vec3A>,
     holds: &mut Vec<u8>,
@@ -249,8 +251,9 @@ pub fn guard_step(
         Dimension::Three => STEP_LIMIT,
     };
     guard::limit(positions, &mut proposed, |i| reach * asked.radius[i].min(1.0));
-    let watch = if shells.len() > 1 { Watch::Way } else { Watch::End };
-    let guarded = guard::guard(complex, shells, &asked.size, positions, &mut proposed, watch, holds);
+    let surfaces = surfaces.into();
+    let watch = if surfaces.written.is_some() { Watch::Way } else { Watch::End };
+    let guarded = guard::guard(complex, surfaces, &asked.size, positions, &mut proposed, watch, holds);
     let motion = largest_motion(positions, &proposed);
     *positions = proposed;
     (motion, guarded)

@@ -5,20 +5,20 @@ use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Flow, Growth, Guarded, Problem,
+    Asked, Contacts, Flow, Growth, Guarded, Problem, Trail,
     areas::{AreaCorrection, Corrected},
     contact, contact_step, flow, global_step, grow, guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
-    certificate::{Placed, Shell},
+    certificate::{Placed, Surfaces},
     diagnostics::Stopwatch,
     edge::plugin::LinearSolution,
-    film::plugin::Reel,
     importance::{asked_sizes, plugin::Importance, smoothed},
-    schedule::{Domain, Solve, Stage},
+    schedule::{Failed, Solve, Stage},
+    settings::Settings,
     voxel::{
         CHUNK, Dimension, blend,
-        plugin::{Lattice, PixelShares},
+        plugin::{DomainBoundary, DomainPicture, Lattice, PixelShares},
     },
 };
 
@@ -67,10 +67,6 @@ pub struct Leap {
     pub before: Option<(f32, Vec<Vec3A>)>,
 }
 
-/// Surfaces that must not cross: the complex's skin first.
-#[derive(Component, Debug)]
-pub struct Shells(pub Vec<Shell>);
-
 /// Whether the boundary as it will be written is guarded in every iteration, and not only when a keyframe is made: once
 /// it had to be drawn back, it will have to be again, and small holds are better than large ones.
 #[derive(Component, Debug, Default)]
@@ -89,6 +85,33 @@ pub struct HeldBack(pub Guarded);
 #[derive(Component, Debug)]
 pub struct Flowing(pub Flow);
 
+/// From where growth begins when something else is asked for. Set anew, it begins again.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Start {
+    /// From the rest shape.
+    #[default]
+    Rest,
+    /// From the present state, if it is valid, or the last one that is; else from rest.
+    Present,
+}
+
+/// A valid state that growth goes on from, once; from rest where there is none.
+#[derive(Component, Debug, Default)]
+pub struct Resume(pub Option<Valid>);
+
+/// Marks domains whose growth went on from a valid state rather than from rest.
+#[derive(Component, Debug)]
+pub struct Resumed;
+
+/// A valid state.
+#[derive(Debug)]
+pub struct Valid {
+    /// `[nodes]` in cells.
+    pub positions: Vec<Vec3A>,
+    /// `[cells]` sizes that it was asked for.
+    pub size: Vec<f32>,
+}
+
 /// Adds the stages.
 pub struct CollisionPlugin;
 
@@ -97,7 +120,7 @@ impl Plugin for CollisionPlugin {
         app.add_systems(
             Solve,
             (
-                (start, grow_sizes, lead, leap).chain().in_set(Stage::Grow),
+                (begin, grow_sizes, lead, leap).chain().in_set(Stage::Grow),
                 fit_cells.in_set(Stage::Local),
                 find_contacts.in_set(Stage::Contact),
                 propose.in_set(Stage::Global),
@@ -107,43 +130,83 @@ impl Plugin for CollisionPlugin {
     }
 }
 
-type New = (With<LinearSolution>, Without<Growing>);
+type Renewed = (Without<Failed>, Or<(Changed<LinearSolution>, Changed<Settings>, Changed<Start>)>);
 
-fn start(
-    mut commands: Commands,
-    lattices: Query<(Entity, &Domain, &Lattice, &Importance), New>,
-    mut watch: ResMut<Stopwatch>,
-) {
-    for (entity, domain, Lattice(complex), importance) in &lattices {
-        if let Some(picture) = domain.picture.as_ref().filter(|picture| picture.regions.is_some()) {
-            let correction = watch.time("grow", || AreaCorrection::new(picture, &domain.boundary));
-            commands.entity(entity).insert(correction);
-            if picture.is_map() {
-                let flow = watch.time("grow", || Flow::new(complex));
-                commands.entity(entity).insert(Flowing(flow));
+type Asking<'a> = (
+    Entity,
+    &'a Settings,
+    &'a DomainBoundary,
+    Option<&'a DomainPicture>,
+    &'a Lattice,
+    &'a Importance,
+    Option<&'a mut CollisionProblem>,
+    Option<&'a mut Resume>,
+);
+
+/// Begins to grow, from rest or from a state that is valid, whenever something else is asked for.
+fn begin(mut commands: Commands, mut domains: Query<Asking, Renewed>, mut watch: ResMut<Stopwatch>) {
+    for (entity, settings, DomainBoundary(boundary), picture, Lattice(complex), importance, problem, resume) in
+        &mut domains
+    {
+        let mut entity = commands.entity(entity);
+        let regional = picture.map(|picture| &picture.0).filter(|picture| picture.regions.is_some());
+        match regional {
+            Some(picture) => {
+                let correction = watch.time("grow", || AreaCorrection::new(picture, boundary));
+                entity.insert(correction);
+            }
+            None => {
+                entity.remove::<AreaCorrection>();
             }
         }
-        let problem = watch.time("grow", || {
-            Problem::of_cells(complex, asked_sizes(complex, &importance.cells), domain.settings.fidelity)
-        });
-        let growth = Growth::of(complex.dimension, domain.settings.keys, &problem.importance);
-        commands.entity(entity).insert((
-            CollisionProblem(problem),
-            Growing(growth),
-            Warped(complex.rest.clone()),
-            Shells(vec![Shell::skin(complex)]),
-            (Sizes::default(), Rotations::default(), Targets::default(), Touching::default(), Proposed::default()),
-            (HeldBack::default(), Holds::default(), BoundaryAtRisk::default(), Leap::default()),
-        ));
+        let asked = asked_sizes(complex, &importance.cells);
+        let is_new = problem.is_none();
+        let resume = resume.and_then(|mut resume| resume.0.take());
+        let growth = match &resume {
+            Some(state) => {
+                let change = state.size.iter().zip(&asked).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f32::max);
+                Growth::change(complex.dimension, change)
+            }
+            None => Growth::of(complex.dimension, settings.keys, &asked),
+        };
+        let (positions, from) = match resume {
+            Some(Valid { positions, size }) => (positions, Some(size)),
+            None => (complex.rest.clone(), None),
+        };
+        let is_from_rest = from.is_none();
+        match problem {
+            Some(mut problem) => {
+                let problem = &mut problem.0;
+                (problem.importance, problem.fidelity, problem.from) = (asked, settings.fidelity, from);
+            }
+            None => {
+                let problem = watch.time("grow", || Problem::of_cells(complex, asked, settings.fidelity));
+                entity.insert(CollisionProblem(problem));
+            }
+        }
+        if is_new && regional.is_some_and(|picture| picture.is_map()) {
+            let flow = watch.time("grow", || Flow::new(complex));
+            entity.insert(Flowing(flow));
+        }
+        entity.insert((Growing(growth), Warped(positions), Leap::default()));
+        if is_from_rest {
+            entity.insert((Rotations::default(), Holds::default(), BoundaryAtRisk::default())).remove::<Resumed>();
+        } else {
+            entity.insert(Resumed);
+        }
+        if is_new {
+            entity.insert((Sizes::default(), Targets::default(), Touching::default(), Proposed::default()));
+            entity.insert((HeldBack::default(), Trail::default()));
+        }
     }
 }
 
 type Regional<'a> = (
-    &'a Domain,
+    &'a DomainBoundary,
     &'a Lattice,
     &'a PixelShares,
     &'a mut Warped,
-    &'a Shells,
+    &'a Surfaces,
     &'a mut CollisionProblem,
     &'a mut Growing,
     &'a mut Sizes,
@@ -152,17 +215,17 @@ type Regional<'a> = (
 
 /// Regions of a picture that have not their area yet ask for more or less, and λ = 1 settles once more.
 fn correct_areas(mut domains: Query<Regional>, mut watch: ResMut<Stopwatch>) {
-    for (domain, lattice, shares, mut warped, shells, mut problem, mut growing, mut sizes, mut correction) in
+    for (boundary, lattice, shares, mut warped, surfaces, mut problem, mut growing, mut sizes, mut correction) in
         &mut domains
     {
         if !growing.0.at_end() || !correction.is_due(growing.0.iteration(), growing.0.settled()) {
             continue;
         }
-        let Some(binding) = shells.0.iter().find_map(Shell::binding) else { continue };
+        let Some(binding) = surfaces.binding() else { continue };
         let corrected = watch.time("grow", || {
             let cell = lattice.0.grid.cell_size.powi(2);
             let state = (warped.0.as_slice(), binding.apply(&warped.0));
-            correction.correct(&shares.0, &domain.boundary, (state.0, &state.1), cell)
+            correction.correct(&shares.0, &boundary.0, (state.0, &state.1), cell)
         });
         let asked = match corrected {
             Corrected::Right => continue,
@@ -206,28 +269,24 @@ type Led<'a> = (
     &'a Sizes,
     &'a BoundaryAtRisk,
     &'a Growing,
-    &'a mut Shells,
+    &'a Surfaces,
     &'a mut Warped,
-    Option<&'a mut Reel>,
+    &'a mut Trail,
 );
 
 /// Maps begin each step of λ by a flow.
 fn lead(mut domains: Query<Led>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), mut flowing, Sizes(asked), at_risk, Growing(growth), mut shells, mut warped, reel) in
+    for (Lattice(complex), mut flowing, Sizes(asked), at_risk, Growing(growth), surfaces, mut warped, mut trail) in
         &mut domains
     {
         if growth.done() || !growth.flows() {
             continue;
         }
-        let guarded = if at_risk.0 { shells.0.len() } else { 1 };
+        let surfaces = surfaces.all_if(at_risk.0);
         let most = if growth.at_end() { flow::CORRECTING } else { flow::GROWING };
         let proposed = watch.time("grow", || flowing.0.step(complex, asked, &warped.0, most));
-        watch.time("guard", || {
-            guard_step(complex, asked, &mut shells.0[..guarded], &mut warped.0, proposed, &mut Vec::new())
-        });
-        if let Some(mut reel) = reel {
-            reel.0.pass(&warped.0);
-        }
+        watch.time("guard", || guard_step(complex, asked, surfaces, &mut warped.0, proposed, &mut Vec::new()));
+        trail.pass(&warped.0);
     }
 }
 
@@ -326,7 +385,7 @@ type Accepted<'a> = (
     &'a Sizes,
     &'a BoundaryAtRisk,
     &'a mut Growing,
-    &'a mut Shells,
+    &'a Surfaces,
     &'a mut Warped,
     &'a mut Proposed,
     &'a mut HeldBack,
@@ -340,7 +399,7 @@ fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
         sizes,
         at_risk,
         mut growing,
-        mut shells,
+        surfaces,
         mut warped,
         mut proposed,
         mut held_back,
@@ -359,10 +418,9 @@ fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
             held_back.0 = Guarded::default();
             continue;
         }
-        let guarded = if at_risk.0 { shells.0.len() } else { 1 };
-        let (motion, guarded) = watch.time("guard", || {
-            guard_step(complex, &sizes.0, &mut shells.0[..guarded], &mut warped.0, proposed, &mut holds.0)
-        });
+        let surfaces = surfaces.all_if(at_risk.0);
+        let (motion, guarded) =
+            watch.time("guard", || guard_step(complex, &sizes.0, surfaces, &mut warped.0, proposed, &mut holds.0));
         growing.0.iterated(motion);
         if guarded.held_back > 0 || complex.dimension == Dimension::Two {
             growing.0.held_back();

@@ -11,8 +11,11 @@ use crate::diagnostics::peak_memory_bytes;
 use crate::file::write_atomically;
 use crate::importance::field::Field;
 use crate::importance::{RegionArea, median_error, worst};
-use crate::schedule::{Counts, DomainSummary, InputSummary, Outcome, Reference, Settings};
 use crate::{Error, Result};
+use crate::{
+    run::{Counts, DomainSummary, InputSummary, Outcome},
+    settings::{Reference, Settings},
+};
 use crate::{scene::Scene, voxel::memory_estimate};
 
 /// All that is written about a run.
@@ -340,7 +343,7 @@ impl From<&Outcome> for CertificateReport {
 impl From<&Outcome> for FidelityReport {
     fn from(outcome: &Outcome) -> Self {
         let fidelity = &outcome.fidelity;
-        let region = |region: &crate::schedule::RegionFidelity| RegionReport {
+        let region = |region: &crate::certificate::RegionFidelity| RegionReport {
             name: region.name.clone(),
             asked: region.asked,
             achieved: region.achieved,

@@ -9,8 +9,8 @@ pub mod plugin;
 use glam::{Vec2, Vec3A};
 
 use crate::{
-    certificate::{Certificate, Placed, Shell, certify, certify_way},
-    collision::{Watch, guard::guard},
+    certificate::{Certificate, Checked, Placed, Surfaces, certify, certify_way},
+    collision::{Trail, Watch, guard::guard},
     voxel::{Complex, Dimension, blend},
 };
 
@@ -33,15 +33,9 @@ pub struct Film {
     keyframes: Vec<Keyframe>,
     /// λ and flat positions of states that the growth passed between keyframes whose way is not known to be clear, ascending.
     passed: Vec<(f32, Vec<Vec2>)>,
-    /// Those since the last keyframe.
-    passing: Vec<Vec<Vec2>>,
     /// Vertices that follow the states otherwise than when the keyframes were certified.
     stale: Vec<u32>,
 }
-
-/// States that are passed on the way to a keyframe may take this much memory; where they would take more, each second is
-/// let go.
-const MOST_PASSED_BYTES: usize = 256 << 20;
 
 /// Between keyframes nearer in λ than this no other is put.
 const SHORTEST_STEP: f32 = 0.03;
@@ -52,7 +46,12 @@ const SHORTEST_FLAT_STEP: f32 = 0.008;
 
 impl Film {
     /// Adds the next keyframe; its λ must be above the last one's, or equal, which replaces it.
-    pub fn push(&mut self, mut keyframe: Keyframe) {
+    pub fn push(&mut self, keyframe: Keyframe) {
+        self.push_after(keyframe, &mut Trail::default());
+    }
+
+    /// The same, with the flat states that were passed on the way to it, of which none are left.
+    pub fn push_after(&mut self, mut keyframe: Keyframe, trail: &mut Trail) {
         if self.keyframes.last().is_some_and(|last| last.lambda >= keyframe.lambda) {
             self.keyframes.pop();
             // It was the way from the one that is replaced.
@@ -60,36 +59,20 @@ impl Film {
             let last = self.keyframes.last().map_or(0.0, |last| last.lambda);
             self.passed.retain(|(lambda, _)| *lambda < last);
         }
-        let mut passing = std::mem::take(&mut self.passing);
-        // What came after a state that was returned to is no way there.
-        let end = passing.iter().position(|positions| is_at(positions, &keyframe.positions)).unwrap_or(passing.len());
-        passing.truncate(end);
+        let passed = trail.take_up_to(&keyframe.positions);
         if let (Some(last), false) = (self.keyframes.last(), keyframe.way_is_clear) {
-            let step = (keyframe.lambda - last.lambda) / (passing.len() + 1) as f32;
+            let step = (keyframe.lambda - last.lambda) / (passed.len() + 1) as f32;
             let lambda = |k: usize| last.lambda + step * (k + 1) as f32;
-            self.passed.extend(passing.into_iter().enumerate().map(|(k, positions)| (lambda(k), positions)));
+            self.passed.extend(passed.into_iter().enumerate().map(|(k, positions)| (lambda(k), positions)));
         }
         self.keyframes.push(keyframe);
     }
 
-    /// Keeps a flat state on the way to the next keyframe, in case that the straight way there is not clear. From each to
-    /// the next the way must be.
-    pub fn pass(&mut self, positions: &[Vec3A]) {
-        if size_of::<Vec2>() * positions.len() * self.passing.len() > MOST_PASSED_BYTES {
-            let mut is_kept = false;
-            self.passing.retain(|_| {
-                is_kept = !is_kept;
-                is_kept
-            });
-        }
-        self.passing.push(positions.iter().map(|p| p.truncate()).collect());
-    }
-
     /// Makes flat surfaces follow the complex on the straight way between two states, where they must; whether that changed
     /// any.
-    fn straighten(&mut self, shells: &mut [Shell], way: [&[Vec3A]; 2]) -> bool {
+    fn straighten(&mut self, surfaces: &mut Surfaces, way: [&[Vec3A]; 2]) -> bool {
         let before = self.stale.len();
-        self.stale.extend(shells.iter_mut().flat_map(|shell| shell.straighten(way)));
+        self.stale.extend(surfaces.straighten(way));
         self.stale.len() > before
     }
 
@@ -109,14 +92,14 @@ impl Film {
     /// Makes every blend of two neighbouring keyframes valid, as [`certify_way`] has it. A flat surface that alone is in the
     /// way follows the complex. Else there are new keyframes between, the states that were passed there first, and where that
     /// does not help, the later one is drawn back to what can be reached from the earlier.
-    pub fn mend(&mut self, complex: &Complex, shells: &mut [Shell], size: &[f32]) {
+    pub fn mend(&mut self, complex: &Complex, surfaces: &mut Surfaces, size: &[f32]) {
         let shortest = match complex.dimension {
             Dimension::Two => SHORTEST_FLAT_STEP / self.keyframes.len().saturating_sub(1).max(1) as f32,
             Dimension::Three => SHORTEST_STEP,
         };
         let mut k = 1_usize;
         loop {
-            if self.certify_again(complex, shells) {
+            if self.certify_again(complex, surfaces) {
                 k = 1;
             }
             let [from, to] = match self.keyframes.get(k.saturating_sub(1)..=k) {
@@ -127,22 +110,22 @@ impl Film {
                 k += 1;
                 continue;
             }
-            if is_clear(complex, shells, from, to) {
+            if is_clear(complex, &*surfaces, from, to) {
                 self.keyframes[k].way_is_clear = true;
                 k += 1;
                 continue;
             }
             let [a, b] = [from.lambda, to.lambda];
-            if complex.dimension == Dimension::Two && is_clear(complex, &shells[..1], from, to) {
+            if complex.dimension == Dimension::Two && is_clear(complex, surfaces.skin_alone(), from, to) {
                 let way = [from.positions.clone(), to.positions.clone()];
-                if self.straighten(shells, [&way[0], &way[1]]) {
+                if self.straighten(surfaces, [&way[0], &way[1]]) {
                     continue;
                 }
             }
             if let Some((lambda, positions)) = self.take_passed(a, b) {
-                let mut certificate = certify(complex, shells, &positions);
-                while !certificate.certified() && self.straighten(shells, [&positions, &positions]) {
-                    certificate = certify(complex, shells, &positions);
+                let mut certificate = certify(complex, &*surfaces, &positions);
+                while !certificate.certified() && self.straighten(surfaces, [&positions, &positions]) {
+                    certificate = certify(complex, &*surfaces, &positions);
                 }
                 if certificate.certified() {
                     self.keyframes.insert(k, Keyframe { lambda, positions, certificate, way_is_clear: false });
@@ -151,10 +134,10 @@ impl Film {
             }
             let (from, to) = (&self.keyframes[k - 1], &self.keyframes[k]);
             if b - a > shortest {
-                let keyframe = between(complex, shells, size, from, to);
+                let keyframe = between(complex, surfaces, size, from, to);
                 self.keyframes.insert(k, keyframe);
             } else {
-                self.keyframes[k] = reached(complex, shells, size, from, b, to.positions.clone());
+                self.keyframes[k] = reached(complex, surfaces, size, from, b, to.positions.clone());
                 if let Some(next) = self.keyframes.get_mut(k + 1) {
                     // It was the way from where this one was.
                     next.way_is_clear = false;
@@ -162,20 +145,21 @@ impl Film {
                 k += 1;
             }
         }
-        (self.passed, self.passing) = (Vec::new(), Vec::new());
+        self.passed = Vec::new();
     }
 
     /// Certifies anew what stale vertices have changed: what is proven to be sound where they are stays certified. Whether
     /// there were any.
-    fn certify_again(&mut self, complex: &Complex, shells: &[Shell]) -> bool {
+    fn certify_again(&mut self, complex: &Complex, surfaces: &Surfaces) -> bool {
         let stale = std::mem::take(&mut self.stale);
         let Some(&last) = stale.iter().max() else { return false };
-        let vertices = shells.iter().filter_map(Shell::binding).map(|binding| binding.nodes.len()).max();
+        let vertices = surfaces.binding().map(|binding| binding.nodes.len());
         let mut changed = vec![false; vertices.unwrap_or(0).max(last as usize + 1)];
         for vertex in stale {
             changed[vertex as usize] = true;
         }
-        let stays_sound = |way: [&[Vec3A]; 2]| shells.iter().all(|shell| shell.stays_sound(&changed, way));
+        let stays_sound =
+            |way: [&[Vec3A]; 2]| surfaces.written.as_ref().is_none_or(|written| written.stays_sound(&changed, way));
         for k in 0..self.keyframes.len() {
             let positions = &self.keyframes[k].positions;
             let way_is_clear = self.keyframes[k].way_is_clear
@@ -184,7 +168,7 @@ impl Film {
             let stays =
                 way_is_clear || self.keyframes[k].certificate.certified() && stays_sound([positions, positions]);
             if !stays {
-                self.keyframes[k].certificate = certify(complex, shells, positions);
+                self.keyframes[k].certificate = certify(complex, surfaces, positions);
             }
             self.keyframes[k].way_is_clear = way_is_clear;
         }
@@ -192,33 +176,29 @@ impl Film {
     }
 }
 
-/// Whether a flat state is that of these positions.
-fn is_at(flat: &[Vec2], positions: &[Vec3A]) -> bool {
-    flat.iter().zip(positions).all(|(a, b)| *a == b.truncate())
-}
-
 /// Whether every blend of two keyframes is valid.
-fn is_clear(complex: &Complex, shells: &[Shell], from: &Keyframe, to: &Keyframe) -> bool {
-    let [from, to] = [from, to].map(|keyframe| Placed::new(shells, keyframe.positions.clone()));
-    certify_way(complex, shells, &from, &to).1
+fn is_clear<'a>(complex: &Complex, surfaces: impl Into<Checked<'a>>, from: &Keyframe, to: &Keyframe) -> bool {
+    let surfaces = surfaces.into();
+    let [from, to] = [from, to].map(|keyframe| Placed::new(surfaces, keyframe.positions.clone()));
+    certify_way(complex, surfaces, &from, &to).1
 }
 
 /// A keyframe half-way between two, guarded from the first of them.
-pub fn between(complex: &Complex, shells: &mut [Shell], size: &[f32], a: &Keyframe, b: &Keyframe) -> Keyframe {
-    reached(complex, shells, size, a, 0.5 * (a.lambda + b.lambda), blend(&a.positions, &b.positions, 0.5))
+pub fn between(complex: &Complex, surfaces: &Surfaces, size: &[f32], a: &Keyframe, b: &Keyframe) -> Keyframe {
+    reached(complex, surfaces, size, a, 0.5 * (a.lambda + b.lambda), blend(&a.positions, &b.positions, 0.5))
 }
 
 /// The keyframe at λ that can be reached from another on the way to `positions`.
 fn reached(
     complex: &Complex,
-    shells: &mut [Shell],
+    surfaces: &Surfaces,
     size: &[f32],
     from: &Keyframe,
     lambda: f32,
     mut positions: Vec<Vec3A>,
 ) -> Keyframe {
-    guard(complex, shells, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
-    let certificate = certify(complex, shells, &positions);
+    guard(complex, surfaces, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
+    let certificate = certify(complex, surfaces, &positions);
     Keyframe { lambda, positions, certificate, way_is_clear: false }
 }
 
@@ -233,7 +213,7 @@ mod tests {
         let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::new(7, 2, 1) };
         let inside: Vec<bool> = (0..14).map(|k| !(2..5).contains(&(k % 7))).collect();
         let complex = Complex::from_flat_cells(grid, &inside);
-        let mut shells = vec![Shell::skin(&complex)];
+        let mut surfaces = Surfaces::skin_of(&complex);
         let moved = |by: Vec3A| -> Vec<Vec3A> {
             complex.rest.iter().map(|p| if p.x < 3.0 { *p + by } else { *p - by }).collect()
         };
@@ -241,21 +221,22 @@ mod tests {
         let mut film = Film::default();
         let keyframe = |lambda: f32, positions: Vec<Vec3A>, way_is_clear: bool| Keyframe {
             lambda,
-            certificate: certify(&complex, &shells, &positions),
+            certificate: certify(&complex, &surfaces, &positions),
             positions,
             way_is_clear,
         };
         film.push(keyframe(0.0, complex.rest.clone(), true));
+        let mut trail = Trail::default();
         if passes {
-            film.pass(&moved(Vec3A::new(2.5, 3.0, 0.0)));
+            trail.pass(&moved(Vec3A::new(2.5, 3.0, 0.0)));
         }
-        film.push(keyframe(0.5, last.clone(), false));
+        film.push_after(keyframe(0.5, last.clone(), false), &mut trail);
         // A way that is clear only as long as the keyframe before stays where it is.
         film.push(keyframe(1.0, last.clone(), true));
-        film.mend(&complex, &mut shells, &vec![1.0; complex.cells.len()]);
+        film.mend(&complex, &mut surfaces, &vec![1.0; complex.cells.len()]);
         for pair in film.keyframes().windows(2) {
             assert!(pair[0].lambda < pair[1].lambda && pair[1].certificate.certified());
-            assert!(is_clear(&complex, &shells, &pair[0], &pair[1]));
+            assert!(is_clear(&complex, &surfaces, &pair[0], &pair[1]));
         }
         (complex, film, last)
     }

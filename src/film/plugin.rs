@@ -5,13 +5,15 @@ use glam::Vec3A;
 
 use super::{Film, Keyframe, is_clear};
 use crate::{
-    certificate::{Certificate, Placed, Shell, certify, certify_rest, certify_way},
+    certificate::{Certificate, Placed, Surfaces, certify, certify_rest, certify_way},
     collision::{
-        Watch, guard,
-        plugin::{BoundaryAtRisk, Growing, Leap, Shells, Sizes, Warped},
+        Trail, Watch, grow, guard,
+        plugin::{BoundaryAtRisk, CollisionProblem, Growing, Leap, Resume, Sizes, Start, Valid, Warped},
     },
     diagnostics::Stopwatch,
-    schedule::{Solve, Stage},
+    edge::plugin::LinearSolution,
+    schedule::{Failed, Solve, Stage},
+    settings::Settings,
     voxel::{Complex, Dimension, plugin::Lattice},
 };
 
@@ -24,16 +26,72 @@ pub struct FilmPlugin;
 
 impl Plugin for FilmPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Solve, (open, keep).chain().in_set(Stage::Certify));
+        app.add_systems(Solve, reset.in_set(Stage::Reset))
+            .add_systems(Solve, (open, keep).chain().in_set(Stage::Certify));
     }
 }
 
-type Unfilmed = (With<Growing>, Without<Reel>);
+type Renewed = (With<Reel>, Or<(Changed<LinearSolution>, Changed<Settings>, Changed<Start>)>);
 
-fn open(mut commands: Commands, domains: Query<(Entity, &Lattice, &Shells), Unfilmed>, mut watch: ResMut<Stopwatch>) {
-    for (entity, Lattice(complex), shells) in &domains {
+type Filming<'a> = (
+    Entity,
+    &'a Start,
+    &'a Lattice,
+    &'a Surfaces,
+    &'a CollisionProblem,
+    &'a Warped,
+    &'a Sizes,
+    &'a mut Reel,
+    &'a mut Trail,
+);
+
+/// Something else is asked for: the film begins anew, at rest or at the state that growth goes on from.
+fn reset(mut commands: Commands, mut domains: Query<Filming, Renewed>, mut watch: ResMut<Stopwatch>) {
+    for (entity, start, Lattice(complex), surfaces, CollisionProblem(problem), warped, sizes, mut reel, mut trail) in
+        &mut domains
+    {
+        let valid = || {
+            let certificate = certify(complex, surfaces, &warped.0);
+            if certificate.certified() {
+                return Some((warped.0.clone(), certificate, sizes.0.size.clone()));
+            }
+            let last = reel.0.keyframes().last().filter(|last| last.certificate.certified())?;
+            let size = grow(complex, problem, last.lambda).size;
+            Some((last.positions.clone(), last.certificate.clone(), size))
+        };
+        let state = match start {
+            Start::Rest => None,
+            Start::Present => watch.time("certificate", valid),
+        };
+        let mut entity = commands.entity(entity);
+        match state.filter(|(_, _, size)| size.len() == complex.cells.len()) {
+            Some((positions, certificate, size)) => {
+                let mut film = Film::default();
+                let state = positions.clone();
+                film.push(Keyframe { lambda: 0.0, positions: state, certificate, way_is_clear: true });
+                reel.0 = film;
+                trail.clear();
+                entity.insert(Resume(Some(Valid { positions, size })));
+            }
+            None => {
+                entity.remove::<Reel>();
+            }
+        }
+    }
+}
+
+type Unfilmed = (With<Growing>, Without<Reel>, Without<Failed>);
+
+fn open(
+    mut commands: Commands,
+    mut domains: Query<(Entity, &Lattice, &Surfaces, &mut Trail), Unfilmed>,
+    mut watch: ResMut<Stopwatch>,
+) {
+    for (entity, Lattice(complex), surfaces, mut trail) in &mut domains {
         let mut film = Film::default();
-        let certificate = watch.time("certificate", || certify_rest(complex, &shells.0));
+        // What was passed before there was a film leads to no keyframe of it.
+        trail.clear();
+        let certificate = watch.time("certificate", || certify_rest(complex, surfaces));
         film.push(Keyframe { lambda: 0.0, positions: complex.rest.clone(), certificate, way_is_clear: true });
         commands.entity(entity).insert(Reel(film));
     }
@@ -44,23 +102,25 @@ type Filmed<'a> = (
     &'a Sizes,
     &'a mut Growing,
     &'a mut Warped,
-    &'a mut Shells,
+    &'a mut Surfaces,
     &'a mut Reel,
     &'a mut BoundaryAtRisk,
     &'a mut Leap,
+    &'a mut Trail,
 );
 
 fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), sizes, mut growing, mut warped, mut shells, mut reel, mut at_risk, mut leap) in &mut domains
+    for (Lattice(complex), sizes, mut growing, mut warped, mut surfaces, mut reel, mut at_risk, mut leap, mut trail) in
+        &mut domains
     {
-        let (shells, film, warped) = (&mut shells.0, &mut reel.0, &mut warped.0);
         if growing.0.done() {
             continue;
         }
+        let (film, warped, trail) = (&mut reel.0, &mut warped.0, &mut *trail);
         // In the plane parts flow far between two keyframes, further than straight ways lead.
         let is_flat = complex.dimension == Dimension::Two;
         if is_flat {
-            film.pass(warped);
+            trail.pass(warped);
         }
         if !growing.0.settled() {
             continue;
@@ -69,9 +129,9 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
             let landed = watch.time("certificate", || {
                 // Where the last way ended, most often.
                 let start = leap.start.take().filter(|start| start.nodes() == warped.as_slice());
-                let start = start.unwrap_or_else(|| Placed::new(shells, warped.clone()));
-                let end = Placed::new(shells, std::mem::take(&mut leap.positions));
-                land(complex, shells, &sizes.0.size, &start, &end).map(|certificate| (certificate, start, end))
+                let start = start.unwrap_or_else(|| Placed::new(&*surfaces, warped.clone()));
+                let end = Placed::new(&*surfaces, std::mem::take(&mut leap.positions));
+                land(complex, &surfaces, &sizes.0.size, &start, &end).map(|certificate| (certificate, start, end))
             });
             let Some((certificate, start, end)) = landed else {
                 growing.0.walk();
@@ -80,12 +140,10 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
             warped.copy_from_slice(end.nodes());
             leap.before = Some((growing.0.last_key(), start.into_nodes()));
             leap.start = Some(end);
-            film.push(Keyframe {
-                lambda: growing.0.lambda(),
-                positions: warped.clone(),
-                certificate,
-                way_is_clear: true,
-            });
+            film.push_after(
+                Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate, way_is_clear: true },
+                trail,
+            );
             growing.0.advance();
             continue;
         }
@@ -93,15 +151,15 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
             growing.0.advance();
             continue;
         }
-        let mut certificate = watch.time("certificate", || certify(complex, shells, warped));
-        while !certificate.certified() && film.straighten(shells, [warped, warped]) {
-            certificate = watch.time("certificate", || certify(complex, shells, warped));
+        let mut certificate = watch.time("certificate", || certify(complex, &*surfaces, warped));
+        while !certificate.certified() && film.straighten(&mut surfaces, [warped, warped]) {
+            certificate = watch.time("certificate", || certify(complex, &*surfaces, warped));
         }
         if !certificate.certified() {
             at_risk.0 = true;
             growing.0.hurry();
             growing.0.held_back();
-            certificate = draw_back(complex, &sizes.0.size, shells, film, warped, &mut watch);
+            certificate = draw_back(complex, &sizes.0.size, &surfaces, film, warped, &mut watch);
         }
         if !is_flat {
             leap.before = film.keyframes().last().map(|k| (k.lambda, k.positions.clone()));
@@ -109,17 +167,17 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         let (lambda, positions) = (growing.0.lambda(), warped.clone());
         let mut keyframe = Keyframe { lambda, positions, certificate, way_is_clear: false };
         if is_flat && let Some(last) = film.keyframes().last() {
-            keyframe.way_is_clear = watch.time("certificate", || is_clear(complex, shells, last, &keyframe));
+            keyframe.way_is_clear = watch.time("certificate", || is_clear(complex, &*surfaces, last, &keyframe));
         }
-        film.push(keyframe);
+        film.push_after(keyframe, trail);
         growing.0.advance();
     }
 }
 
 /// The certificate of a leap's end, if all of the way there is valid and no element comes out flatter than the guard
 /// would let it.
-fn land(complex: &Complex, shells: &[Shell], size: &[f32], from: &Placed, to: &Placed) -> Option<Certificate> {
-    let (certificate, clear) = certify_way(complex, shells, from, to);
+fn land(complex: &Complex, surfaces: &Surfaces, size: &[f32], from: &Placed, to: &Placed) -> Option<Certificate> {
+    let (certificate, clear) = certify_way(complex, surfaces, from, to);
     let least = size.iter().copied().fold(f32::INFINITY, f32::min);
     let floor = f64::from(guard::VOLUME_FLOOR * complex.dimension.measure(least));
     (clear && certificate.min_volume_ratio() > floor).then_some(certificate)
@@ -129,15 +187,15 @@ fn land(complex: &Complex, shells: &[Shell], size: &[f32], from: &Placed, to: &P
 fn draw_back(
     complex: &Complex,
     size: &[f32],
-    shells: &mut [Shell],
+    surfaces: &Surfaces,
     film: &Film,
     warped: &mut [Vec3A],
     watch: &mut Stopwatch,
 ) -> Certificate {
     if let Some(last) = film.keyframes().last().filter(|k| k.certificate.certified()) {
         watch.time("guard", || {
-            guard::guard(complex, shells, size, &last.positions, warped, Watch::Way, &mut Vec::new())
+            guard::guard(complex, surfaces, size, &last.positions, warped, Watch::Way, &mut Vec::new())
         });
     }
-    watch.time("certificate", || certify(complex, shells, warped))
+    watch.time("certificate", || certify(complex, &*surfaces, warped))
 }

@@ -36,7 +36,7 @@ use std::time::Instant;
 use image::RgbaImage;
 use serde::Serialize;
 
-use crate::schedule::{Observer, Progress};
+use crate::run::{Observer, Progress};
 use crate::view::{self, Adapter};
 use crate::{Error, Result};
 use encode::{Format, Reel, Whole};

@@ -7,9 +7,9 @@ use glam::{Vec3, Vec3A};
 
 use super::Mix;
 use crate::boundary::Boundary;
-use crate::certificate::Shell;
+use crate::certificate::Surfaces;
 use crate::certificate::{Certificate, Places, certify};
-use crate::schedule::{Outcome, Solved};
+use crate::run::{Outcome, Solved};
 use crate::transfer::Binding;
 use crate::view::{Body, Pose, ViewFrame};
 use crate::voxel::blend;
@@ -20,7 +20,7 @@ pub struct Subject {
     boundary: Arc<Boundary>,
     complex: Arc<Complex>,
     binding: Arc<Binding>,
-    shells: Vec<Shell>,
+    surfaces: Surfaces,
     /// λ, node state and what was proven of it, by rising λ.
     keyframes: Vec<(f32, State, Certificate)>,
     rest: State,
@@ -52,14 +52,14 @@ const FITTED: usize = 4000;
 impl Subject {
     /// Takes a solved domain; what came of it is handed back.
     pub fn new(boundary: Arc<Boundary>, solved: Solved) -> (Self, Outcome) {
-        let Solved { complex, binding, shells, film, linear, importance, outcome, .. } = solved;
+        let Solved { complex, binding, surfaces, film, linear, importance, outcome, .. } = solved;
         let keyframe = |k: &crate::film::Keyframe| (k.lambda, Arc::new(k.positions.clone()), k.certificate.clone());
         let subject = Self {
             boundary,
             rest: Arc::new(complex.rest.clone()),
             complex,
             binding,
-            shells,
+            surfaces,
             keyframes: film.keyframes().iter().map(keyframe).collect(),
             linear: Arc::new(linear),
             importance: Arc::new(outcome.importance.clone()),
@@ -123,14 +123,14 @@ impl Subject {
         let pose = self.classic_pose(lambda);
         let state = blend(&pose.from, &pose.to, pose.blend);
         let places = self.places.get_or_insert_with(|| Places::new(&self.boundary, &self.complex));
-        let (complex, shells) = (&self.complex, &self.shells);
-        let find = || Arc::new(places.to_be_seen(complex, shells, &state));
+        let (complex, surfaces) = (&self.complex, &self.surfaces);
+        let find = || Arc::new(places.to_be_seen(complex, surfaces, &state));
         self.faulty.entry(lambda.to_bits()).or_insert_with(find).clone()
     }
 
     fn prove(&mut self, shot: Shot, pose: &Pose) -> Certificate {
-        let (complex, shells) = (&self.complex, &mut self.shells);
-        let check = || certify(complex, shells, &blend(&pose.from, &pose.to, pose.blend));
+        let (complex, surfaces) = (&self.complex, &self.surfaces);
+        let check = || certify(complex, surfaces, &blend(&pose.from, &pose.to, pose.blend));
         self.proven.entry(shot).or_insert_with(check).clone()
     }
 

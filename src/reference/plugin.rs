@@ -5,17 +5,18 @@ use glam::Vec3A;
 
 use super::{ITERATIONS, Reading, fig5};
 use crate::{
-    certificate::{Shell, certify},
+    certificate::{Surfaces, certify},
     collision::{
         Growth, Problem,
-        plugin::{CollisionProblem, Growing, Shells, Warped},
+        plugin::{CollisionProblem, Growing, Warped},
     },
     diagnostics::Stopwatch,
     edge::plugin::LinearSolution,
     film::{Film, Keyframe, plugin::Reel},
     importance::plugin::Importance,
-    schedule::{Domain, Reference, Solve, Stage},
-    voxel::{blend, plugin::Lattice},
+    schedule::{Failed, Solve, Stage},
+    settings::{Reference, Settings},
+    voxel::{Complex, blend, plugin::Lattice},
 };
 
 /// Iterations done so far.
@@ -38,15 +39,14 @@ impl Plugin for ReferencePlugin {
     }
 }
 
-type New = (With<LinearSolution>, Without<Growing>);
+type New = (With<LinearSolution>, Without<Growing>, Without<Failed>);
 
-fn start(mut commands: Commands, lattices: Query<(Entity, &Domain, &Lattice, &Importance), New>) {
-    for (entity, domain, Lattice(complex), importance) in &lattices {
+fn start(mut commands: Commands, lattices: Query<(Entity, &Settings, &Lattice, &Importance), New>) {
+    for (entity, settings, Lattice(complex), importance) in &lattices {
         commands.entity(entity).insert((
-            CollisionProblem(Problem::new(complex, &importance.nodes, domain.settings.fidelity)),
-            Growing(Growth::plan(domain.settings.keys, 1.0, 1.0)),
+            CollisionProblem(Problem::new(complex, &importance.nodes, settings.fidelity)),
+            Growing(Growth::plan(settings.keys, 1.0, 1.0)),
             Warped(complex.rest.clone()),
-            Shells(vec![Shell::skin(complex)]),
             ReferenceIterations::default(),
             Reel::default(),
         ));
@@ -54,38 +54,38 @@ fn start(mut commands: Commands, lattices: Query<(Entity, &Domain, &Lattice, &Im
 }
 
 fn scale(
-    mut domains: Query<(&Domain, &Lattice, &LinearSolution, &mut Growing, &mut Warped, &mut Shells, &mut Reel)>,
+    mut domains: Query<(&Settings, &Lattice, &LinearSolution, &mut Growing, &mut Warped, &Surfaces, &mut Reel)>,
     mut watch: ResMut<Stopwatch>,
 ) {
-    for (domain, Lattice(complex), linear, mut growing, mut warped, mut shells, mut reel) in &mut domains {
-        for k in 0..=domain.settings.keys {
-            let lambda = k as f32 / domain.settings.keys.max(1) as f32;
+    for (settings, Lattice(complex), linear, mut growing, mut warped, surfaces, mut reel) in &mut domains {
+        for k in 0..=settings.keys {
+            let lambda = k as f32 / settings.keys.max(1) as f32;
             warped.0 = blend(&complex.rest, &linear.0, lambda);
-            keep(complex, &mut shells.0, &mut reel.0, lambda, &warped.0, &mut watch);
+            keep(complex, surfaces, &mut reel.0, lambda, &warped.0, &mut watch);
         }
         growing.0.finish();
     }
 }
 
 type Projected<'a> = (
-    &'a Domain,
+    &'a Settings,
     &'a Lattice,
     &'a LinearSolution,
     &'a CollisionProblem,
     &'a mut Growing,
     &'a mut Warped,
-    &'a mut Shells,
+    &'a Surfaces,
     &'a mut Reel,
     &'a mut ReferenceIterations,
 );
 
 fn project(mut domains: Query<Projected>, mut watch: ResMut<Stopwatch>) {
-    for (domain, Lattice(complex), linear, problem, mut growing, mut warped, mut shells, mut reel, mut done) in
+    for (settings, Lattice(complex), linear, problem, mut growing, mut warped, surfaces, mut reel, mut done) in
         &mut domains
     {
-        let keys = domain.settings.keys.max(1);
+        let keys = settings.keys.max(1);
         if done.0 == 0 {
-            keep(complex, &mut shells.0, &mut reel.0, 0.0, &complex.rest, &mut watch);
+            keep(complex, surfaces, &mut reel.0, 0.0, &complex.rest, &mut watch);
         }
         for _ in 0..ITERATIONS_PER_RUN {
             let lambda = done.0 as f32 / (ITERATIONS - 1) as f32;
@@ -93,7 +93,7 @@ fn project(mut domains: Query<Projected>, mut watch: ResMut<Stopwatch>) {
             done.0 += 1;
             let key = done.0 * keys / ITERATIONS;
             if key > (done.0 - 1) * keys / ITERATIONS {
-                keep(complex, &mut shells.0, &mut reel.0, key as f32 / keys as f32, &warped.0, &mut watch);
+                keep(complex, surfaces, &mut reel.0, key as f32 / keys as f32, &warped.0, &mut watch);
             }
         }
         if done.0 >= ITERATIONS {
@@ -102,24 +102,18 @@ fn project(mut domains: Query<Projected>, mut watch: ResMut<Stopwatch>) {
     }
 }
 
-fn iterate(
-    complex: &crate::voxel::Complex,
-    problem: &Problem,
-    linear: &[Vec3A],
-    lambda: f32,
-    x: &[Vec3A],
-) -> Vec<Vec3A> {
+fn iterate(complex: &Complex, problem: &Problem, linear: &[Vec3A], lambda: f32, x: &[Vec3A]) -> Vec<Vec3A> {
     fig5(complex, problem, linear, Reading::Sensible, lambda, x)
 }
 
 fn keep(
-    complex: &crate::voxel::Complex,
-    shells: &mut [Shell],
+    complex: &Complex,
+    surfaces: &Surfaces,
     film: &mut Film,
     lambda: f32,
     positions: &[Vec3A],
     watch: &mut Stopwatch,
 ) {
-    let certificate = watch.time("certificate", || certify(complex, shells, positions));
+    let certificate = watch.time("certificate", || certify(complex, surfaces, positions));
     film.push(Keyframe { lambda, positions: positions.to_vec(), certificate, way_is_clear: false });
 }

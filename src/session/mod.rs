@@ -2,7 +2,8 @@
 //!
 //! # Theory
 //! Eq. 1's matrix depends on the lattice alone, so after a dab only its right-hand side changes: the linear solution is
-//! there within a few cycles of a multigrid hierarchy that is kept, from the solution of before ([`Linear`]). The
+//! there within a few cycles of a multigrid hierarchy that is kept, from the solution of before: the stages up to
+//! [`EdgeSolve`](crate::schedule::Stage::EdgeSolve) run at once, the others once no more dabs come. The
 //! certified solve then goes on from the last valid state to the new sizes, and when it has come to rest the growth is
 //! solved from rest again, so that the film shows what is painted.
 //!
@@ -11,11 +12,9 @@
 //! counts; a [`Snapshot`] comes out, the latest one wins, its arrays are shared and never copied. Cancelling takes one
 //! iteration. One core is left to the window.
 
-mod linear;
 mod snapshot;
 mod worker;
 
-pub use linear::{Asked, Linear};
 pub use snapshot::{Histogram, Lattice, Phase, Snapshot, State};
 
 use std::{
@@ -27,7 +26,7 @@ use std::{
     time::Instant,
 };
 
-use crate::{boundary::Boundary, importance::Stack, paint::PaintedPicture, schedule::Settings};
+use crate::{boundary::Boundary, importance::Stack, paint::PaintedPicture, settings::Settings};
 
 /// What to solve.
 #[derive(Debug, Clone)]

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::{
     boundary::Boundary,
     certificate::{Certificate, volume_ratios},
-    schedule::{DomainSummary, Outcome},
+    run::{DomainSummary, Outcome},
     transfer::Binding,
     voxel::Complex,
 };

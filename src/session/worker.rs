@@ -5,22 +5,18 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{Asked, Asking, Histogram, Lattice, Linear, Order, Phase, Shared, Snapshot, State, Subject};
+use super::{Asking, Histogram, Lattice, Order, Phase, Shared, Snapshot, State, Subject};
 use crate::{
     Error, Result,
-    boundary::Boundary,
-    certificate::Shell,
-    collision::plugin::{CollisionProblem, Shells, Warped},
+    collision::plugin::{CollisionProblem, Resumed, Start, Warped},
     edge::plugin::LinearSolution,
     film::plugin::Reel,
     importance::plugin::Importance,
-    schedule::{Domain, Run, Settings, domain_summary},
-    transfer::{Binding, flat_boundary},
-    voxel::{
-        self, Dimension, check_flat_resolution, check_resolution,
-        plugin::{PixelShares, SuspectedWelds},
-        suspected_welds, voxelize,
-    },
+    run::{Content, Domain, Run, domain_summary},
+    schedule::Stage,
+    settings::Settings,
+    transfer::plugin::Bound,
+    voxel::plugin::{DomainBoundary, Lattice as Cells, SuspectedWelds},
 };
 
 /// Between two snapshots of a running solve: each shows a state, and a window draws no more than sixty a second.
@@ -75,10 +71,8 @@ enum Job {
 
 struct Solve {
     run: Run,
-    linear: Linear,
-    /// Importance has changed and the run does not know yet; when it may be told.
+    /// Something else is asked for; when growth may begin with it.
     changed: Option<Instant>,
-    asked: Asked,
     /// Which phase was stopped.
     stopped: Option<Phase>,
 }
@@ -168,10 +162,7 @@ impl Worker<'_> {
     fn open(&mut self, subject: Subject) -> Result<()> {
         let Snapshot { version, opened, answers, .. } = self.now;
         self.now = Snapshot { version, opened, answers, phase: Phase::Preparing, ..Snapshot::default() };
-        match subject.picture {
-            Some(_) => check_flat_resolution(subject.settings.resolution)?,
-            None => check_resolution(subject.settings.resolution)?,
-        }
+        domain(&subject).check()?;
         self.subject = Some(subject);
         self.job = Some(Job::Voxelize);
         self.publish();
@@ -181,14 +172,14 @@ impl Worker<'_> {
     fn set_settings(&mut self, settings: Settings) -> Result<()> {
         let Some(subject) = &mut self.subject else { return Ok(()) };
         let same_lattice = subject.settings.resolution == settings.resolution && self.now.phase != Phase::Failed;
-        subject.settings = settings;
+        subject.settings = settings.clone();
         let subject = subject.clone();
-        if same_lattice && self.job.is_some() {
-            let picture = subject.picture.map(Asking::Picture);
-            self.set_importance(picture.unwrap_or(Asking::Surface(subject.importance)), None)
-        } else {
-            self.open(subject)
+        match &mut self.job {
+            Some(Job::Solve(solve)) if same_lattice => solve.run.set(settings, Start::Present),
+            Some(Job::Voxelize) if same_lattice => return Ok(()),
+            _ => return self.open(subject),
         }
+        self.changed(None)
     }
 
     /// The linear solution now; the rest once no more dabs come. `at` is when the change was ordered.
@@ -198,17 +189,26 @@ impl Worker<'_> {
             Asking::Surface(stack) => subject.importance = stack,
             Asking::Picture(picture) => subject.picture = Some(picture),
         }
-        let (Some(Job::Solve(solve)), Some(lattice)) = (&mut self.job, &self.now.lattice) else {
-            // What has failed is tried again with it; what is being prepared takes it into account.
-            let subject = subject.clone();
-            return if self.job.is_none() { self.open(subject) } else { Ok(()) };
-        };
-        let (asked, linear) = solve.linear.solve(subject, &lattice.complex);
-        self.now.linear = Some(Arc::new(linear.to_vec()));
-        self.now.importance = Some(Arc::new(asked.importance.nodes.clone()));
-        solve.asked = asked;
+        match &mut self.job {
+            Some(Job::Solve(solve)) => solve.run.ask(content(subject), Start::Present),
+            // What is being prepared takes it into account.
+            Some(Job::Voxelize) => return Ok(()),
+            // What has failed is tried again with it.
+            None => {
+                let subject = subject.clone();
+                return self.open(subject);
+            }
+        }
+        self.changed(at)
+    }
+
+    /// Answers a change with the linear solution.
+    fn changed(&mut self, at: Option<Instant>) -> Result<()> {
+        let Some(Job::Solve(solve)) = &mut self.job else { return Ok(()) };
+        solve.run.step_until(Stage::EdgeSolve)?;
         solve.changed = Some(Instant::now() + QUIET);
         solve.stopped = None;
+        self.now.take_linear(&solve.run);
         self.now.phase = Phase::Adapting;
         self.now.fraction = 0.0;
         self.now.film_is_current = false;
@@ -251,7 +251,6 @@ impl Worker<'_> {
         let result = match &self.job {
             None => Ok(()),
             Some(Job::Voxelize) => self.prepare(),
-            Some(Job::Solve(solve)) if solve.changed.is_some() => self.adapt(),
             Some(Job::Solve(_)) if self.now.phase == Phase::Checking => self.finish(),
             Some(Job::Solve(_)) => self.iterate(),
         };
@@ -261,56 +260,27 @@ impl Worker<'_> {
     /// Lattice, importance, linear solution.
     fn prepare(&mut self) -> Result<()> {
         let Some(subject) = self.subject.clone() else { return Ok(()) };
-        let (lattice, welds) = lattice(&subject)?;
-        let (boundary, complex) = (lattice.boundary.clone(), lattice.complex.clone());
-        self.now.lattice = Some(lattice);
+        let mut run = Run::interactive(domain(&subject))?;
+        run.step_until(Stage::Bind)?;
+        self.now.lattice = Some(lattice(&subject, &run)?);
         self.publish();
 
-        let mut linear = Linear::new(&subject, &complex);
-        let (asked, solution) = linear.solve(&subject, &complex);
-        let solution = solution.to_vec();
-        self.now.linear = Some(Arc::new(solution.clone()));
-        self.now.importance = Some(Arc::new(asked.importance.nodes.clone()));
+        run.step_until(Stage::EdgeSolve)?;
+        self.now.take_linear(&run);
         self.now.phase = Phase::Growing;
         self.publish();
 
-        let mut run = Run::new(domain(&subject, &boundary, &asked))?;
-        let parts = (asked.importance.clone(), LinearSolution(solution));
-        run.insert((voxel::plugin::Lattice(complex), SuspectedWelds(welds), parts));
-        if let Some((_, shares)) = &asked.pixels {
-            run.insert(PixelShares(shares.clone()));
-        }
-        let solve = Solve { run, linear, changed: None, asked, stopped: None };
-        self.job = Some(Job::Solve(Box::new(solve)));
-        Ok(())
-    }
-
-    /// Tells the run what has changed: from the last valid state if there is one, else from rest.
-    fn adapt(&mut self) -> Result<()> {
-        let (Some(subject), Some(lattice), Some(Job::Solve(solve))) = (&self.subject, &self.now.lattice, &mut self.job)
-        else {
-            return Ok(());
-        };
-        let domain = domain(subject, &lattice.boundary, &solve.asked);
-        solve.changed = None;
-        if let Some((_, shares)) = &solve.asked.pixels {
-            solve.run.insert(PixelShares(shares.clone()));
-        }
-        let (importance, linear) = solve.parts(self.now.linear.as_deref());
-        if solve.run.go_on(domain.clone(), importance, linear) {
-            self.now.phase = Phase::Adapting;
-        } else {
-            let (importance, linear) = solve.parts(self.now.linear.as_deref());
-            solve.run.restart(domain, importance, linear);
-            self.now.phase = Phase::Growing;
-        }
-        self.publish();
+        self.job = Some(Job::Solve(Box::new(Solve { run, changed: None, stopped: None })));
         Ok(())
     }
 
     fn iterate(&mut self) -> Result<()> {
         let Some(Job::Solve(solve)) = &mut self.job else { return Ok(()) };
         let done = solve.run.step()?;
+        if solve.changed.take().is_some() {
+            let from_present = solve.run.get::<Resumed>().is_some();
+            self.now.phase = if from_present { Phase::Adapting } else { Phase::Growing };
+        }
         let progress = solve.run.progress();
         let adapting = self.now.phase == Phase::Adapting;
         self.now.fraction = progress.fraction;
@@ -340,14 +310,10 @@ impl Worker<'_> {
     /// After the last valid state has been led to what is painted: the film.
     fn grow_again(&mut self) {
         self.take_state(true);
-        let (Some(subject), Some(lattice), Some(Job::Solve(solve))) = (&self.subject, &self.now.lattice, &mut self.job)
-        else {
-            return;
-        };
-        let (importance, linear) = solve.parts(self.now.linear.as_deref());
-        let domain = domain(subject, &lattice.boundary, &solve.asked);
-        solve.run.restart(domain, importance, linear);
-        self.now.phase = Phase::Growing;
+        if let Some(Job::Solve(solve)) = &mut self.job {
+            solve.run.begin(Start::Rest);
+            self.now.phase = Phase::Growing;
+        }
     }
 
     /// The present state; with its histogram where it is one of the film.
@@ -414,10 +380,11 @@ impl Worker<'_> {
     }
 }
 
-impl Solve {
-    /// What a run needs to know of a change.
-    fn parts(&self, linear: Option<&Vec<glam::Vec3A>>) -> (Importance, LinearSolution) {
-        (self.asked.importance.clone(), LinearSolution(linear.cloned().unwrap_or_default()))
+impl Snapshot {
+    /// V' and the importance it is for.
+    fn take_linear(&mut self, run: &Run) {
+        self.linear = run.get::<LinearSolution>().map(|linear| Arc::new(linear.0.clone()));
+        self.importance = run.get::<Importance>().map(|importance| Arc::new(importance.nodes.clone()));
     }
 }
 
@@ -433,46 +400,39 @@ impl State {
 
 /// The surface of a picture may follow its nodes otherwise than at first: as the keyframes found so far have to be drawn.
 fn follow(run: &Run, now: &mut Snapshot) {
-    let (Some(lattice), Some(Shells(shells))) = (&mut now.lattice, run.get()) else { return };
-    if lattice.complex.dimension != Dimension::Two {
-        return;
-    }
-    if let Some(binding) = shells.iter().find_map(Shell::binding)
-        && !binding.follows_as(&lattice.binding)
-    {
-        lattice.binding = Arc::new(binding.clone());
+    if let (Some(lattice), Some(Bound(binding))) = (&mut now.lattice, run.get()) {
+        lattice.binding = binding.clone();
     }
 }
 
-/// What is solved: the subject itself, or of a picture its pixels on the mesh they are drawn on.
-fn domain(subject: &Subject, drawn: &Arc<Boundary>, asked: &Asked) -> Domain {
-    let settings = subject.settings.clone();
-    match &asked.pixels {
-        Some((flat, _)) => Domain { boundary: drawn.clone(), ..Domain::picture(flat.clone(), settings) },
-        None => Domain::body(subject.boundary.clone(), subject.importance.clone(), settings),
+/// What is solved: the subject itself, or of a picture its pixels.
+fn content(subject: &Subject) -> Content {
+    match &subject.picture {
+        Some(picture) => Content::Picture(picture.flat()),
+        None => Content::Body(subject.boundary.clone(), subject.importance.clone()),
     }
 }
 
-/// The lattice of a subject, and how many of its cells are suspected of gluing sheets.
-fn lattice(subject: &Subject) -> Result<(Lattice, usize)> {
-    let resolution = subject.settings.resolution;
-    let (boundary, complex, welds) = match &subject.picture {
-        Some(picture) => {
-            let flat = &picture.ground.flat;
-            let complex = flat.lattice(resolution)?;
-            let mesh = flat_boundary(&flat.name, &complex, flat.size);
-            let mesh = mesh.with_texture(&flat.name, picture.ground.texture.to_vec());
-            (Arc::new(mesh), complex, 0)
-        }
-        None => {
-            let boundary = subject.boundary.clone();
-            let complex = voxelize(&boundary, resolution)?;
-            let welds = suspected_welds(&boundary, &boundary.welded(), &complex);
-            (boundary, complex, welds)
-        }
+/// The same with the settings.
+fn domain(subject: &Subject) -> Domain {
+    Domain { content: content(subject), settings: subject.settings.clone() }
+}
+
+/// The lattice of a subject that is bound to it; what is drawn of a picture has its texture.
+fn lattice(subject: &Subject, run: &Run) -> Result<Lattice> {
+    let parts = (|| {
+        Some((run.get::<DomainBoundary>()?, run.get::<Cells>()?, run.get::<Bound>()?, run.get::<SuspectedWelds>()?))
+    })();
+    let Some((DomainBoundary(boundary), Cells(complex), Bound(binding), SuspectedWelds(welds))) = parts else {
+        return Err(Error::Fault("a domain that was voxelized has no lattice".into()));
     };
-    let summary = domain_summary(&complex, resolution, welds);
-    let complex = Arc::new(complex);
-    let binding = Arc::new(Binding::new(&boundary, &complex));
-    Ok((Lattice { boundary, complex, binding, summary }, welds))
+    let boundary = match &subject.picture {
+        Some(picture) => {
+            let (name, texture) = (&picture.ground.flat.name, picture.ground.texture.to_vec());
+            Arc::new((**boundary).clone().with_texture(name, texture))
+        }
+        None => boundary.clone(),
+    };
+    let summary = domain_summary(complex, subject.settings.resolution, *welds);
+    Ok(Lattice { boundary, complex: complex.clone(), binding: binding.clone(), summary })
 }

@@ -4,47 +4,52 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 
-use super::Binding;
+use super::{Binding, flat_boundary};
 use crate::{
     Error,
-    certificate::Shell,
-    collision::plugin::Shells,
     diagnostics::Stopwatch,
-    schedule::{Domain, Failure, Solve, Stage},
-    voxel::plugin::Lattice,
+    schedule::{Failed, Refused, Solve, Stage, StageResult, note_failures},
+    voxel::plugin::{DomainBoundary, DomainPicture, Lattice},
 };
 
-/// Barycentric coordinates of a domain's boundary.
-#[derive(Component, Debug)]
+/// Barycentric coordinates of a domain's boundary: as the surface follows the nodes now.
+#[derive(Component, Debug, Clone)]
 pub struct Bound(pub Arc<Binding>);
-
-/// Pairs of the input's triangles that crossed at rest.
-#[derive(Component, Debug)]
-pub struct SelfIntersections(pub usize);
 
 /// Adds the stage.
 pub struct TransferPlugin;
 
 impl Plugin for TransferPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Solve, bind_new.in_set(Stage::Bind));
+        app.add_systems(Solve, (draw_pictures, bind.pipe(note_failures)).chain().in_set(Stage::Bind));
     }
 }
 
-fn bind_new(
-    mut commands: Commands,
-    mut lattices: Query<(Entity, &Domain, &Lattice, &mut Shells), Without<Bound>>,
-    mut watch: ResMut<Stopwatch>,
-    mut failure: ResMut<Failure>,
-) {
-    for (entity, domain, Lattice(complex), mut shells) in &mut lattices {
-        let binding = watch.time("transfer", || Binding::new(&domain.boundary, complex));
-        if let Some(vertex) = binding.unbound(&domain.boundary) {
-            failure.0 = Some(Error::Fault(format!("vertex {vertex} lies outside the lattice made for it")));
-            return;
-        }
-        let shell = watch.time("input", || Shell::boundary(&domain.boundary, binding.clone(), complex));
-        commands.entity(entity).insert((Bound(Arc::new(binding)), SelfIntersections(shell.inherited())));
-        shells.0.push(shell);
+/// Pictures are drawn on a mesh of their lattice.
+fn draw_pictures(mut commands: Commands, pictures: Query<(Entity, &DomainPicture, &Lattice), Without<DomainBoundary>>) {
+    for (entity, DomainPicture(picture), Lattice(complex)) in &pictures {
+        let mesh = flat_boundary(&picture.name, complex, picture.size);
+        commands.entity(entity).insert(DomainBoundary(mesh.into()));
     }
+}
+
+type New = (Without<Bound>, Without<Failed>);
+
+fn bind(
+    mut commands: Commands,
+    lattices: Query<(Entity, &DomainBoundary, &Lattice), New>,
+    mut watch: ResMut<Stopwatch>,
+) -> StageResult {
+    let mut refused = Refused::default();
+    for (entity, DomainBoundary(boundary), Lattice(complex)) in &lattices {
+        let binding = watch.time("transfer", || Binding::new(boundary, complex));
+        let bound = match binding.unbound(boundary) {
+            None => Ok(Bound(Arc::new(binding))),
+            Some(vertex) => Err(Error::Fault(format!("vertex {vertex} lies outside the lattice made for it"))),
+        };
+        if let Some(bound) = refused.note(entity, bound) {
+            commands.entity(entity).insert(bound);
+        }
+    }
+    refused.into_result()
 }

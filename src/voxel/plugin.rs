@@ -4,16 +4,24 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 
-use super::{Complex, Shares, suspected_welds, voxelize};
+use super::{Complex, Flat, Shares, suspected_welds, voxelize};
 use crate::{
-    Result,
+    boundary::Boundary,
     diagnostics::Stopwatch,
-    schedule::{Domain, Failure, Solve, Stage},
-    transfer::flat_boundary,
+    schedule::{Failed, Refused, Solve, Stage, StageResult, note_failures},
+    settings::Settings,
 };
 
+/// B of a domain. Of a picture it is the flat mesh that it is drawn on, which comes with the lattice.
+#[derive(Component, Debug, Clone)]
+pub struct DomainBoundary(pub Arc<Boundary>);
+
+/// The picture of a domain, where it is one that is warped.
+#[derive(Component, Debug, Clone)]
+pub struct DomainPicture(pub Arc<Flat>);
+
 /// C and C_t of a domain.
-#[derive(Component, Debug)]
+#[derive(Component, Debug, Clone)]
 pub struct Lattice(pub Arc<Complex>);
 
 /// Cells of a domain that may glue two sheets of its surface.
@@ -29,40 +37,52 @@ pub struct VoxelPlugin;
 
 impl Plugin for VoxelPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Solve, voxelize_new.in_set(Stage::Voxelize));
+        let systems = (voxelize_bodies.pipe(note_failures), voxelize_pictures.pipe(note_failures), share_pixels);
+        app.add_systems(Solve, systems.chain().in_set(Stage::Voxelize));
     }
 }
 
-fn voxelize_new(
+type New = (Without<Lattice>, Without<Failed>);
+
+fn voxelize_bodies(
     mut commands: Commands,
-    mut domains: Query<(Entity, &mut Domain), Without<Lattice>>,
+    domains: Query<(Entity, &Settings, &DomainBoundary), (New, Without<DomainPicture>)>,
     mut watch: ResMut<Stopwatch>,
-    mut failure: ResMut<Failure>,
-) {
-    for (entity, mut domain) in &mut domains {
-        match voxelize_domain(&mut domain, &mut watch) {
-            Ok((complex, shares, welds)) => {
-                let mut entity = commands.entity(entity);
-                entity.insert((Lattice(Arc::new(complex)), SuspectedWelds(welds)));
-                if let Some(shares) = shares {
-                    entity.insert(PixelShares(shares));
-                }
-            }
-            Err(error) => failure.0 = Some(error),
+) -> StageResult {
+    let mut refused = Refused::default();
+    for (entity, settings, DomainBoundary(boundary)) in &domains {
+        let lattice = watch.time("voxelize", || voxelize(boundary, settings.resolution));
+        if let Some(complex) = refused.note(entity, lattice) {
+            let welds = watch.time("input", || suspected_welds(boundary, &boundary.welded(), &complex));
+            commands.entity(entity).insert((Lattice(Arc::new(complex)), SuspectedWelds(welds)));
         }
     }
+    refused.into_result()
 }
 
-/// The lattice of a domain; of a picture also its shares, and B is made.
-fn voxelize_domain(domain: &mut Domain, watch: &mut Stopwatch) -> Result<(Complex, Option<Shares>, usize)> {
-    let resolution = domain.settings.resolution;
-    if let Some(picture) = &domain.picture {
-        let (complex, shares) = watch.time("voxelize", || picture.voxelize(resolution))?;
-        domain.boundary = flat_boundary(&picture.name, &complex, picture.size).into();
-        return Ok((complex, Some(shares), 0));
+fn voxelize_pictures(
+    mut commands: Commands,
+    domains: Query<(Entity, &Settings, &DomainPicture), New>,
+    mut watch: ResMut<Stopwatch>,
+) -> StageResult {
+    let mut refused = Refused::default();
+    for (entity, settings, DomainPicture(picture)) in &domains {
+        let lattice = watch.time("voxelize", || picture.lattice(settings.resolution));
+        if let Some(complex) = refused.note(entity, lattice) {
+            commands.entity(entity).insert((Lattice(Arc::new(complex)), SuspectedWelds(0)));
+        }
     }
-    let boundary = &domain.boundary;
-    let complex = watch.time("voxelize", || voxelize(boundary, resolution))?;
-    let welds = watch.time("input", || suspected_welds(boundary, &boundary.welded(), &complex));
-    Ok((complex, None, welds))
+    refused.into_result()
+}
+
+/// What is asked of the pixels goes to the cells that they lie in.
+fn share_pixels(
+    mut commands: Commands,
+    pictures: Query<(Entity, &DomainPicture, &Lattice), Changed<DomainPicture>>,
+    mut watch: ResMut<Stopwatch>,
+) {
+    for (entity, DomainPicture(picture), Lattice(complex)) in &pictures {
+        let shares = watch.time("voxelize", || picture.shares(complex));
+        commands.entity(entity).insert(PixelShares(shares));
+    }
 }

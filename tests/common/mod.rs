@@ -9,7 +9,9 @@ use homunculus::{
     Result,
     boundary::Boundary,
     importance::{Layer, Stack},
-    schedule::{self, Observer, Outcome, Progress, Settings},
+    run::{Observer, Outcome, Progress},
+    schedule,
+    settings::Settings,
 };
 
 /// The folder of real inputs beside the checkout, or `None` with a word where it is not.
@@ -96,7 +98,7 @@ impl Random {
 pub fn warp(boundary: &Boundary, layers: &[Layer], resolution: u32, fidelity: f32) -> Result<Outcome> {
     let stack = Stack::load(layers, 1.0, false, boundary, Path::new(""))?;
     let settings = Settings { resolution, fidelity, keys: 8, reference: None };
-    schedule::warp(boundary, &stack, &settings, &Quiet)
+    run::warp(boundary, &stack, &settings, &Quiet)
 }
 
 /// A closed box.

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, IVec3, Mat3A, Quat, Vec3A};
 use homunculus::{
-    certificate::{Certificate, Placed, Shell, Surface, certify, certify_way},
+    certificate::{Certificate, Placed, Surface, Surfaces, certify, certify_way},
     collision::{Problem, contact_step, global_step, grow, guard, guard_step, local_step},
     edge::EdgeSolver,
     voxel::{Complex, blend},
@@ -74,7 +74,7 @@ fn jitter(random: &mut Random) -> Vec3A {
 struct Run<'a> {
     complex: &'a Complex,
     problem: Problem,
-    shells: [Shell; 1],
+    surfaces: Surfaces,
     positions: Vec<Vec3A>,
     rotations: Vec<Quat>,
     targets: Vec<Mat3A>,
@@ -88,7 +88,7 @@ impl<'a> Run<'a> {
         Self {
             complex,
             problem: Problem::new(complex, &importance, fidelity),
-            shells: [Shell::skin(complex)],
+            surfaces: Surfaces::skin_of(complex),
             positions: complex.rest.clone(),
             rotations: Vec::new(),
             targets: Vec::new(),
@@ -110,7 +110,7 @@ impl<'a> Run<'a> {
 
     fn iterate(&mut self, iteration: &Iteration) {
         let (asked, proposed) = self.propose(iteration);
-        guard_step(self.complex, &asked, &mut self.shells, &mut self.positions, proposed, &mut Vec::new());
+        guard_step(self.complex, &asked, &self.surfaces, &mut self.positions, proposed, &mut Vec::new());
     }
 }
 
@@ -120,14 +120,14 @@ fn stays_valid(complex: &Complex, seed: u64, fidelity: f32, iterations: &[Iterat
     for (k, iteration) in iterations.iter().enumerate() {
         run.iterate(iteration);
         prop_assert_eq!(fault(complex, &run.positions), Ok(()), "after iteration {}", k);
-        prop_assert!(certify(complex, &run.shells, &run.positions).certified());
+        prop_assert!(certify(complex, &run.surfaces, &run.positions).certified());
     }
     Ok(())
 }
 
 /// That the certificate counts what brute force counts.
 fn is_told(complex: &Complex, positions: &[Vec3A]) -> Result<Certificate, TestCaseError> {
-    let certificate = certify(complex, &[Shell::skin(complex)], positions);
+    let certificate = certify(complex, &Surfaces::skin_of(complex), positions);
     prop_assert_eq!(certificate.inverted(), inverted(complex, positions));
     prop_assert_eq!(certificate.crossings(), crossings(complex, positions).len());
     Ok(certificate)
@@ -161,9 +161,9 @@ proptest! {
         let mut random = Random(seed);
         let turn = Mat3A::from_axis_angle(jitter(&mut random).normalize().into(), turn);
         let to: Vec<Vec3A> = complex.rest.iter().map(|p| turn * (*p + strength * jitter(&mut random))).collect();
-        let shells = [Shell::skin(&complex)];
-        let (certificate, clear) = way(&complex, &shells, &complex.rest, &to);
-        prop_assert_eq!(&certificate, &certify(&complex, &shells, &to));
+        let surfaces = Surfaces::skin_of(&complex);
+        let (certificate, clear) = way(&complex, &surfaces, &complex.rest, &to);
+        prop_assert_eq!(&certificate, &certify(&complex, &surfaces, &to));
         prop_assert!(strength > 0.02 || clear);
         for _ in 0..8 {
             let between = blend(&complex.rest, &to, random.unit() as f32);
@@ -219,7 +219,7 @@ fn bars_after_growth(guarded: bool) -> Result<(), String> {
         if guarded {
             guard::guard(
                 &complex,
-                &mut run.shells,
+                &run.surfaces,
                 &asked.size,
                 &run.positions,
                 &mut proposed,
@@ -254,9 +254,9 @@ fn mote() -> (Complex, Vec<Vec3A>) {
 }
 
 /// The certificate of a state, and whether the way to it is clear.
-fn way(complex: &Complex, shells: &[Shell], from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
-    let [from, to] = [from, to].map(|nodes| Placed::new(shells, nodes.to_vec()));
-    certify_way(complex, shells, &from, &to)
+fn way(complex: &Complex, surfaces: &Surfaces, from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
+    let [from, to] = [from, to].map(|nodes| Placed::new(surfaces, nodes.to_vec()));
+    certify_way(complex, surfaces, &from, &to)
 }
 
 /// The mote moved up by so many cells.
@@ -270,11 +270,11 @@ fn sabotage_bodies_that_change_places_have_no_clear_way() {
     let (complex, rest) = two_bars();
     let up = |body: u32| if body == complex.body[0] { 3.0 * Vec3A::Z } else { -3.0 * Vec3A::Z };
     let swapped: Vec<Vec3A> = rest.iter().zip(&complex.body).map(|(p, &body)| *p + up(body)).collect();
-    let (certificate, clear) = way(&complex, &[Shell::skin(&complex)], &rest, &swapped);
+    let (certificate, clear) = way(&complex, &Surfaces::skin_of(&complex), &rest, &swapped);
     assert!(certificate.certified() && !clear);
     // A half-turn is a valid state too, but the straight way there goes through a line.
     let turned: Vec<Vec3A> = rest.iter().map(|p| *p * Vec3A::new(-1.0, -1.0, 1.0)).collect();
-    let (certificate, clear) = way(&complex, &[Shell::skin(&complex)], &rest, &turned);
+    let (certificate, clear) = way(&complex, &Surfaces::skin_of(&complex), &rest, &turned);
     assert!(certificate.certified() && !clear);
 }
 
@@ -291,7 +291,7 @@ fn passing(enters: f32, leaves: f32) -> (Complex, Vec<Vec3A>) {
 #[test]
 fn an_edge_that_passes_another_is_proven_to() {
     let (complex, to) = passing(0.92, 0.918);
-    let (certificate, clear) = way(&complex, &[Shell::skin(&complex)], &complex.rest, &to);
+    let (certificate, clear) = way(&complex, &Surfaces::skin_of(&complex), &complex.rest, &to);
     assert!(certificate.certified() && clear);
 }
 
@@ -299,13 +299,13 @@ fn an_edge_that_passes_another_is_proven_to() {
 fn sabotage_an_edge_that_cuts_another_between_two_eighths_is_seen() {
     // 0.918 to 0.92 of the way, while none of the eighths of it is at fault.
     let (complex, to) = passing(0.918, 0.92);
-    let shells = [Shell::skin(&complex)];
+    let surfaces = Surfaces::skin_of(&complex);
     for eighths in 0..=8_u8 {
         let between = blend(&complex.rest, &to, f32::from(eighths) / 8.0);
-        assert!(certify(&complex, &shells, &between).certified());
+        assert!(certify(&complex, &surfaces, &between).certified());
     }
-    assert!(!certify(&complex, &shells, &blend(&complex.rest, &to, 0.919)).certified());
-    let (certificate, clear) = way(&complex, &shells, &complex.rest, &to);
+    assert!(!certify(&complex, &surfaces, &blend(&complex.rest, &to, 0.919)).certified());
+    let (certificate, clear) = way(&complex, &surfaces, &complex.rest, &to);
     assert!(certificate.certified() && !clear);
 }
 
@@ -313,20 +313,20 @@ fn sabotage_an_edge_that_cuts_another_between_two_eighths_is_seen() {
 fn a_body_is_not_swallowed_by_another() {
     let (complex, mut positions) = mote();
     assert_eq!((complex.bodies, fault(&complex, &positions)), (2, Ok(())));
-    let mut shells = [Shell::skin(&complex)];
+    let surfaces = Surfaces::skin_of(&complex);
     let problem = Problem::new(&complex, &vec![1.0; complex.nodes()], 0.5);
     let asked = grow(&complex, &problem, 1.0);
     let proposed = lifted(&complex, &positions, 0.45);
-    guard_step(&complex, &asked, &mut shells, &mut positions, proposed, &mut Vec::new());
+    guard_step(&complex, &asked, &surfaces, &mut positions, proposed, &mut Vec::new());
     assert_eq!(fault(&complex, &positions), Ok(()));
 }
 
 #[test]
 fn the_certificate_tells_a_swallowed_body() {
     let (complex, positions) = mote();
-    assert!(certify(&complex, &[Shell::skin(&complex)], &positions).certified());
+    assert!(certify(&complex, &Surfaces::skin_of(&complex), &positions).certified());
     let deep = lifted(&complex, &positions, 1.0);
-    assert!(!certify(&complex, &[Shell::skin(&complex)], &deep).certified());
+    assert!(!certify(&complex, &Surfaces::skin_of(&complex), &deep).certified());
 }
 
 #[test]

@@ -229,7 +229,8 @@ fn while_it_grows_a_picture_is_drawn_as_it_will_be_written() {
         let states = snapshot.lattice.as_ref().zip(snapshot.film.last());
         if let Some((lattice, last)) = states.filter(|_| snapshot.version != version) {
             let Lattice { boundary, complex, binding, .. } = lattice;
-            let inverted = |binding: Binding| Shell::boundary(boundary, binding, complex).inverted(&last.positions);
+            let inverted =
+                |binding: Binding| Shell::boundary(boundary, binding.into(), complex).inverted(&last.positions);
             assert_eq!(inverted((**binding).clone()), [0; 0], "at λ {}", last.lambda);
             // Sabotage: drawn as at first it would be.
             smooth_is_inverted |= !inverted(Binding::new(boundary, complex)).is_empty();
@@ -255,9 +256,9 @@ fn crossings_of_a_picture_are_marked_as_wide_as_in_films() {
     let snapshot = stage.sandbox().snapshot.clone();
     let Lattice { boundary, complex, binding, .. } = snapshot.lattice.clone().unwrap();
     let linear = snapshot.linear.clone().unwrap();
-    let shells = [Shell::skin(&complex), Shell::boundary(&boundary, (*binding).clone(), &complex)];
+    let surfaces = Surfaces::new(&boundary, binding.clone(), &complex);
     let places = Places::new(&boundary, &complex);
-    assert_eq!(*marked, places.to_be_seen(&complex, &shells, &linear), "what a film marks");
-    let bare = places.faulty(&complex, &shells, &linear);
+    assert_eq!(*marked, places.to_be_seen(&complex, &surfaces, &linear), "what a film marks");
+    let bare = places.faulty(&complex, &surfaces, &linear);
     assert!(marked.len() > 4 * bare.len() && !bare.is_empty(), "{} of {}", marked.len(), bare.len());
 }

@@ -12,8 +12,8 @@ use crate::app::{load, progress, scene_options};
 use crate::export::report::Report;
 use crate::gallery::Entry;
 use crate::record::{Mix, Sight, Subject};
+use crate::run::{self, Domain};
 use crate::scene::{Scene, Source};
-use crate::schedule;
 use crate::view::headless::{Renderer, Shown};
 use crate::view::{self, FIELD_OF_VIEW, Looks, Mode, Orbit, Pose, Quality};
 use crate::{Error, Result};
@@ -42,10 +42,12 @@ impl Photographer {
         let (boundary, stack) = load::prepare(&scene, load::open(&scene.source)?)?;
         let settings = load::settings_of(&scene);
         let start = Instant::now();
-        let solved = schedule::solve(&boundary, &stack, &settings, &progress::watcher(true))?;
+        let clamped = stack.clamped();
+        let domain = Domain::body(Arc::new(boundary), Arc::new(stack), settings.clone());
+        let solved = run::solve(domain, &progress::watcher(true))?;
         let seconds = start.elapsed().as_secs_f64();
-        let (mut subject, outcome) = Subject::new(Arc::new(boundary), solved);
-        let report = Report::of(&scene, &settings, stack.clamped(), &outcome, Vec::new());
+        let (mut subject, outcome) = Subject::new(solved.boundary.clone(), solved);
+        let report = Report::of(&scene, &settings, clamped, &outcome, Vec::new());
 
         let looks =
             Looks { mode: Mode::Importance, importance: Some(subject.importance().clone()), ..Looks::default() };

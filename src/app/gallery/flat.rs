@@ -13,8 +13,8 @@ use crate::export::report::Report;
 use crate::gallery::{self, Entry, picture::PictureScene};
 use crate::picture::render::{Canvas, Painter, mark};
 use crate::picture::{FlatMesh, Picture, Pixels};
+use crate::run::{self, Domain};
 use crate::scene::{Scene, Source};
-use crate::schedule::{self, Domain};
 use crate::view::{Legend, Looks, Mode};
 use crate::{Error, Result};
 
@@ -38,7 +38,7 @@ pub(super) fn exhibit(entry: &Entry) -> Result<Found> {
     let flat = load::flat(scene.source.to_string(), &picture, &field);
     let start = Instant::now();
     let domain = Domain::picture(Arc::new(flat), settings.clone());
-    let solved = schedule::solve_domain(domain, &progress::watcher(true))?;
+    let solved = run::solve(domain, &progress::watcher(true))?;
     let seconds = start.elapsed().as_secs_f64();
 
     let drawn = Drawn::new(&picture, &solved.boundary, &solved.outcome.frames);

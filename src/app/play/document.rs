@@ -8,7 +8,7 @@ use crate::boundary::Boundary;
 use crate::importance::Layer;
 use crate::paint::{Canvas, Ground, Painting, Under};
 use crate::scene::{Draft, Scene, Source};
-use crate::schedule::Settings;
+use crate::settings::Settings;
 use crate::view::{Picker, RestShape};
 use crate::{Error, Result};
 

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use image::RgbaImage;
 
 use super::results::Order;
-use crate::certificate::Shell;
+use crate::certificate::Surfaces;
 use crate::film::{Film, Keyframe};
 use crate::record::{self, Camera, Draft, Settings, Subject};
-use crate::schedule::{Observer, Outcome, Progress, Solved};
+use crate::run::{Observer, Outcome, Progress, Solved};
 use crate::view::Orbit;
 use crate::{Error, Result};
 
@@ -178,7 +178,7 @@ fn solved(order: &Order) -> Result<Solved> {
         return Err(Error::Fault("a solve that is done lacks its lattice".into()));
     };
     let (complex, binding) = (lattice.complex.clone(), lattice.binding.clone());
-    let shells = vec![Shell::skin(&complex), Shell::boundary(&order.boundary, (*binding).clone(), &complex)];
+    let surfaces = Surfaces::new(&order.boundary, binding.clone(), &complex);
     let mut film = Film::default();
     for state in &snapshot.film {
         let (positions, certificate) = ((*state.positions).clone(), state.certificate.clone());
@@ -186,7 +186,7 @@ fn solved(order: &Order) -> Result<Solved> {
     }
     let (linear, importance) = ((**linear).clone(), (**importance).clone());
     let (boundary, outcome) = (order.boundary.clone(), Outcome::clone(&order.outcome));
-    Ok(Solved { boundary, complex, binding, shells, film, linear, importance, outcome })
+    Ok(Solved { boundary, complex, binding, surfaces, film, linear, importance, outcome })
 }
 
 /// What has become of a film, in one line.

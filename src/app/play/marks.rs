@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3A;
 
 use crate::certificate::Places;
-use crate::certificate::Shell;
+use crate::certificate::Surfaces;
 use crate::session::Lattice;
 use crate::transfer::Binding;
 use crate::voxel::Complex;
@@ -37,7 +37,7 @@ pub(super) struct Marks {
 struct Tools {
     complex: Arc<Complex>,
     binding: Arc<Binding>,
-    shells: Vec<Shell>,
+    surfaces: Surfaces,
     places: Places,
 }
 
@@ -117,11 +117,11 @@ impl Search {
     pub fn run(self) -> Found {
         let Self { lattice: Lattice { boundary, complex, binding, .. }, tools, linear, step } = self;
         let tools = tools.unwrap_or_else(|| {
-            let shells = vec![Shell::skin(&complex), Shell::boundary(&boundary, (*binding).clone(), &complex)];
-            Arc::new(Tools { places: Places::new(&boundary, &complex), complex, binding, shells })
+            let surfaces = Surfaces::new(&boundary, binding.clone(), &complex);
+            Arc::new(Tools { places: Places::new(&boundary, &complex), complex, binding, surfaces })
         });
         let state = blend(&tools.complex.rest, &linear, step as f32 / STEPS as f32);
-        let faulty = Arc::new(tools.places.to_be_seen(&tools.complex, &tools.shells, &state));
+        let faulty = Arc::new(tools.places.to_be_seen(&tools.complex, &tools.surfaces, &state));
         Found { tools, linear, step, faulty }
     }
 }

@@ -12,8 +12,8 @@ use crate::export::{self, GrowthFrame};
 use crate::importance::{self, Stack};
 use crate::paint::PaintedPicture;
 use crate::panel::{Asked, Choice};
+use crate::run::Outcome;
 use crate::scene::Scene;
-use crate::schedule::Outcome;
 use crate::session::Snapshot;
 use crate::{Error, Result};
 
