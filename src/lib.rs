@@ -44,6 +44,7 @@
 //! Numerics are plain functions over slices. Each stage's `plugin` module is the thin Bevy layer: components that hold
 //! arrays over nodes, cells and edges of a domain entity, and short systems in the [`schedule::Solve`] schedule.
 
+#[cfg(feature = "cli")]
 pub mod app;
 pub mod boundary;
 pub mod certificate;
@@ -61,6 +62,7 @@ pub mod paint;
 #[cfg(feature = "window")]
 pub mod panel;
 pub mod picture;
+pub mod prelude;
 #[cfg(feature = "record")]
 pub mod record;
 pub mod reference;
@@ -73,5 +75,6 @@ pub mod transfer;
 #[cfg(feature = "render")]
 pub mod view;
 pub mod voxel;
+pub mod warp;
 
 pub use error::{Error, Result};

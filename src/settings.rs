@@ -2,6 +2,11 @@
 
 use bevy::prelude::Component;
 
+use crate::{Error, Result};
+
+/// Most keyframes: each is a whole mesh in the growth file.
+pub const MAX_KEYS: usize = 64;
+
 /// How to warp.
 #[derive(Component, Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -29,4 +34,26 @@ impl Default for Settings {
     fn default() -> Self {
         Self { resolution: 64, fidelity: 0.5, keys: 8, reference: None }
     }
+}
+
+impl Settings {
+    /// Refuses what is out of range; how many cells there may be depends on what is warped, see
+    /// [`check_resolution`](crate::voxel::check_resolution).
+    ///
+    /// # Errors
+    /// One sentence with the field, its value and its range.
+    pub fn check(&self) -> Result<()> {
+        check(self.fidelity, self.keys)
+    }
+}
+
+/// Refuses a fidelity or a number of keyframes that is out of range.
+pub(crate) fn check(fidelity: f32, keys: usize) -> Result<()> {
+    if !(0.0..=1.0).contains(&fidelity) {
+        return Err(Error::input(format!("fidelity {fidelity} is not within 0 to 1")));
+    }
+    if !(1..=MAX_KEYS).contains(&keys) {
+        return Err(Error::input(format!("keys {keys} is not within 1 to {MAX_KEYS}")));
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Contract of the command line: its words, their order, what is written where, and how the program ends. Others script
 //! by all of it.
 
+#![cfg(feature = "cli")]
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
 use std::io::{BufRead, BufReader};

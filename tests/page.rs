@@ -1,7 +1,7 @@
 //! Contract of the gallery's pictures. `homunculus gallery --render`: a folder that opens from the disk, with four pictures
 //! of each scene, in which crossings are red where Eq. 1 alone crosses and nowhere else; faults are told on the page and by
 //! the exit code. In the window: a thumbnail of each scene, and a click opens it.
-#![cfg(feature = "record")]
+#![cfg(all(feature = "cli", feature = "record"))]
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
 use std::path::Path;

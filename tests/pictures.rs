@@ -1,7 +1,7 @@
 //! Contract of pictures before the camera and under the glass: `record` shows a picture's own colours, its own outline and
 //! its growth, proven frame by frame; `inspect` says what is in it. Tests say `skipped` where there is no Vulkan driver.
 
-#![cfg(feature = "record")]
+#![cfg(all(feature = "cli", feature = "record"))]
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
 use std::path::Path;

@@ -4,7 +4,7 @@
 //! Films are decoded by ffmpeg, which shares no code with the encoders. Tests say `skipped` where ffmpeg, a Vulkan driver or
 //! the right to mount are absent.
 
-#![cfg(feature = "record")]
+#![cfg(all(feature = "cli", feature = "record"))]
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
 use std::io::{BufRead, BufReader};

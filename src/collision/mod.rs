@@ -16,12 +16,15 @@
 
 pub mod areas;
 pub mod contact;
+mod energy;
 mod flow;
 pub mod growth;
 pub mod guard;
 pub mod local;
 pub mod plugin;
 mod trail;
+
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
@@ -33,6 +36,7 @@ use crate::{
     voxel::{CHUNK, Complex, Dimension},
 };
 pub use contact::Contacts;
+pub use energy::{CellEnergy, Mixture};
 pub use flow::Flow;
 pub use growth::Growth;
 pub use guard::{Guarded, Watch};
@@ -57,8 +61,8 @@ const REACH: f32 = 1.5;
 pub struct Problem {
     /// `[cells]` f_c.
     pub importance: Vec<f32>,
-    /// μ in 0..=1.
-    pub fidelity: f32,
+    /// What cells would like to be.
+    pub energy: Arc<dyn CellEnergy>,
     /// `[cells]` size factor at λ = 0; `None` for 1, the rest shape.
     pub from: Option<Vec<f32>>,
     /// `[cells]` weight of each cell's misfit in the plane, `1 / s²`: a cell that shall be small is as much off by a tenth
@@ -69,16 +73,16 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Prepares for a complex and its `[nodes]` importance.
+    /// Prepares for a complex and its `[nodes]` importance, with the [`Mixture`] of a fidelity in 0..=1.
     pub fn new(complex: &Complex, importance: &[f32], fidelity: f32) -> Self {
-        Self::of_cells(complex, cell_importance(complex, importance), fidelity)
+        Self::of_cells(complex, cell_importance(complex, importance), Arc::new(Mixture { fidelity }))
     }
 
     /// Prepares for a complex and its `[cells]` importance.
-    pub fn of_cells(complex: &Complex, importance: Vec<f32>, fidelity: f32) -> Self {
+    pub fn of_cells(complex: &Complex, importance: Vec<f32>, energy: Arc<dyn CellEnergy>) -> Self {
         Self {
             importance,
-            fidelity,
+            energy,
             from: None,
             weights: Vec::new(),
             operator: Multigrid::new(complex, Weights::Cells),
@@ -142,11 +146,9 @@ pub fn local_step(
         .with_min_len(CHUNK / 4)
         .map(|((q, corners), &size)| {
             if complex.dimension == Dimension::Two {
-                return local::flat_target(corners.map(|c| positions[c as usize]), size, problem.fidelity);
+                return problem.energy.flat_target(corners.map(|c| positions[c as usize]), size);
             }
-            let (target, turned) = local::target(corners.map(|c| positions[c as usize]), *q, size, problem.fidelity);
-            *q = turned;
-            target
+            problem.energy.target(corners.map(|c| positions[c as usize]), q, size)
         })
         .collect_into_vec(targets);
 }

@@ -1,11 +1,13 @@
 //! Grow, flow in the plane, local, contact, global, guard: one iteration of the collision optimization per run of the schedule.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 use glam::{Mat3A, Quat, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    Asked, Contacts, Flow, Growth, Guarded, Problem, Trail,
+    Asked, CellEnergy, Contacts, Flow, Growth, Guarded, Mixture, Problem, Trail,
     areas::{AreaCorrection, Corrected},
     contact, contact_step, flow, global_step, grow, guard_step, largest_motion, local_step, near_step,
 };
@@ -113,11 +115,25 @@ pub struct Valid {
 }
 
 /// Adds the stages.
-pub struct CollisionPlugin;
+#[derive(Debug, Clone, Copy)]
+pub struct CollisionPlugin {
+    /// What the cells of a domain would like to be.
+    pub energy: fn(&Settings) -> Arc<dyn CellEnergy>,
+}
+
+impl Default for CollisionPlugin {
+    fn default() -> Self {
+        Self { energy: |settings| Arc::new(Mixture::from(settings)) }
+    }
+}
+
+/// The energies of new domains.
+#[derive(Resource, Debug)]
+struct Energies(fn(&Settings) -> Arc<dyn CellEnergy>);
 
 impl Plugin for CollisionPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(
+        app.insert_resource(Energies(self.energy)).add_systems(
             Solve,
             (
                 (begin, grow_sizes, lead, leap).chain().in_set(Stage::Grow),
@@ -144,7 +160,12 @@ type Asking<'a> = (
 );
 
 /// Begins to grow, from rest or from a state that is valid, whenever something else is asked for.
-fn begin(mut commands: Commands, mut domains: Query<Asking, Renewed>, mut watch: ResMut<Stopwatch>) {
+fn begin(
+    mut commands: Commands,
+    mut domains: Query<Asking, Renewed>,
+    energies: Res<Energies>,
+    mut watch: ResMut<Stopwatch>,
+) {
     for (entity, settings, DomainBoundary(boundary), picture, Lattice(complex), importance, problem, resume) in
         &mut domains
     {
@@ -159,7 +180,7 @@ fn begin(mut commands: Commands, mut domains: Query<Asking, Renewed>, mut watch:
                 entity.remove::<AreaCorrection>();
             }
         }
-        let asked = asked_sizes(complex, &importance.cells);
+        let (asked, energy) = (asked_sizes(complex, &importance.cells), (energies.0)(settings));
         let is_new = problem.is_none();
         let resume = resume.and_then(|mut resume| resume.0.take());
         let growth = match &resume {
@@ -177,10 +198,10 @@ fn begin(mut commands: Commands, mut domains: Query<Asking, Renewed>, mut watch:
         match problem {
             Some(mut problem) => {
                 let problem = &mut problem.0;
-                (problem.importance, problem.fidelity, problem.from) = (asked, settings.fidelity, from);
+                (problem.importance, problem.energy, problem.from) = (asked, energy, from);
             }
             None => {
-                let problem = watch.time("grow", || Problem::of_cells(complex, asked, settings.fidelity));
+                let problem = watch.time("grow", || Problem::of_cells(complex, asked, energy));
                 entity.insert(CollisionProblem(problem));
             }
         }

@@ -61,14 +61,11 @@ fn prepare(
     }
 }
 
-fn spread(
-    mut commands: Commands,
-    mut domains: Query<
-        (Entity, &DomainBoundary, &DomainImportance, &Lattice, &mut Spreading, Has<Interactive>),
-        Or<(Changed<DomainImportance>, Added<Spreading>)>,
-    >,
-    mut watch: ResMut<Stopwatch>,
-) {
+type Asked<'a> = (Entity, &'a DomainBoundary, &'a DomainImportance, &'a Lattice, &'a mut Spreading, Has<Interactive>);
+
+type AskedAnew = Or<(Changed<DomainImportance>, Added<Spreading>)>;
+
+fn spread(mut commands: Commands, mut domains: Query<Asked, AskedAnew>, mut watch: ResMut<Stopwatch>) {
     for (entity, DomainBoundary(boundary), DomainImportance(stack), Lattice(complex), mut spreading, is_kept) in
         &mut domains
     {

@@ -62,6 +62,14 @@ impl Domain {
         self.content.insert(&mut entity);
         entity.id()
     }
+
+    /// The same from a system; the entity is a domain as soon as commands are applied.
+    pub fn spawn_later(self, commands: &mut Commands) -> Entity {
+        let Self { content, settings } = self;
+        let mut entity = commands.spawn((settings, Start::Rest));
+        entity.queue(move |mut entity: EntityWorldMut| content.insert(&mut entity));
+        entity.id()
+    }
 }
 
 impl Content {

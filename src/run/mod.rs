@@ -50,8 +50,25 @@ impl PluginGroup for SolvePlugins {
             .add(ImportancePlugin)
             .add(EdgePlugin)
             .add(CertificatePlugin)
-            .add(CollisionPlugin)
+            .add(CollisionPlugin::default())
             .add(FilmPlugin)
+    }
+}
+
+/// [`SolvePlugins`], and all domains go one iteration further in each [`Update`].
+pub struct HomunculusPlugins;
+
+impl PluginGroup for HomunculusPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        SolvePlugins.build().add(SolveInUpdate)
+    }
+}
+
+struct SolveInUpdate;
+
+impl Plugin for SolveInUpdate {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Update, |world: &mut World| rayon::scope(|_| world.run_schedule(Solve)));
     }
 }
 

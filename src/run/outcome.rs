@@ -125,6 +125,25 @@ pub struct Solved {
     pub outcome: Outcome,
 }
 
+impl Solved {
+    /// `[vertices]` B' at λ = 1, in the units of B.
+    pub fn positions(&self) -> &[DVec3] {
+        self.outcome.frames.last().map_or(&[], |frame| &frame.positions)
+    }
+
+    /// Whether every frame of the growth is certified.
+    pub fn certified(&self) -> bool {
+        self.outcome.certified()
+    }
+}
+
+impl Outcome {
+    /// Whether every frame is certified.
+    pub fn certified(&self) -> bool {
+        self.certificate.certified() && self.frames.iter().all(|frame| frame.certificate.certified())
+    }
+}
+
 pub(super) fn outcome(world: &mut World, entity: Entity) -> Option<Outcome> {
     let mut watch = std::mem::take(&mut *world.resource_mut::<Stopwatch>());
     let (mut surfaces, Reel(mut film)) = world.entity_mut(entity).take::<(Surfaces, Reel)>()?;
@@ -173,7 +192,7 @@ fn assemble(
     let (fidelity, distortion) = watch.time("fidelity", || {
         let asked = &importance.cells;
         (
-            fidelity(complex, asked, &last.positions, problem.fidelity, names, &importance.region_of_cell),
+            fidelity(complex, asked, &last.positions, settings.fidelity, names, &importance.region_of_cell),
             distortion(complex, &last.positions),
         )
     });

@@ -55,7 +55,7 @@ pub(super) fn progress(world: &World, entity: Entity) -> Progress {
             (Some(Lattice(complex)), Some(CollisionProblem(problem)), Some(Warped(positions)))
                 if growth.is_new_step() =>
             {
-                fidelity(complex, &problem.importance, positions, problem.fidelity, &[], &[]).p95 as f32
+                fidelity(complex, &problem.importance, positions, 0.0, &[], &[]).p95 as f32
             }
             _ => f32::NAN,
         };
