@@ -1,5 +1,6 @@
 //! The stages in an app of one's own: a box whose one end grows, an iteration in each frame, its surface placed from the
 //! components of its domain. `cargo run --release --example in_bevy`.
+#![allow(clippy::print_stdout, reason = "an example says what it found")]
 
 use std::sync::Arc;
 

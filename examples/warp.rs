@@ -1,4 +1,5 @@
 //! Warps a body so that everything above its middle becomes twice as large: `cargo run --release --example warp BODY.obj`.
+#![allow(clippy::print_stdout, reason = "an example says what it found")]
 
 use homunculus::prelude::*;
 
