@@ -39,6 +39,18 @@
 //!   only where the next state is valid too.
 //! - The same input gives the same bits for any number of threads: loops gather, sums go in fixed chunks.
 //!
+//! # Order of the folders
+//!
+//! From the bottom up: each folder uses only those before it. `tests/order.rs` reads this list and holds the sources against
+//! it.
+//!
+//! ```text
+//! error diagnostics file settings schedule
+//! boundary voxel multigrid transfer picture importance edge certificate collision film reference run
+//! gallery paint scene export warp prelude session
+//! view record panel app
+//! ```
+//!
 //! # Layers
 //!
 //! Numerics are plain functions over slices. Each stage's `plugin` module is the thin Bevy layer: components that hold
