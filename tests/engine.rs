@@ -76,7 +76,9 @@ fn a_domain_that_fails_does_not_stop_others() {
 fn an_app_of_ones_own_solves_a_domain_that_a_system_has_spawned() {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, HomunculusPlugins));
-    app.add_systems(Startup, |mut commands: Commands| drop(growing(2.0).spawn_later(&mut commands)));
+    app.add_systems(Startup, |mut commands: Commands| {
+        growing(2.0).spawn_later(&mut commands);
+    });
     let mut domains = app.world_mut().query::<(&Growing, &Warped)>();
     for _ in 0..2000 {
         app.update();
