@@ -4,6 +4,8 @@
 //! An implementation of *Homunculus Warping: Conveying importance using self-intersection-free non-homogeneous mesh
 //! deformation* (Reinert, Ritschel, Seidel 2012). The folders are the paper's sections, the names its symbols.
 //!
+//! In three lines: see [`warp`]. As plugins of a Bevy app: see [`run`].
+//!
 //! # The method on one page
 //!
 //! | symbol | what | here |

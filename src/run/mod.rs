@@ -1,7 +1,32 @@
 //! Who runs the schedule: from a domain to what came of it.
 //!
 //! [`solve()`] runs one domain to its end; a [`Run`] goes on an iteration at a time and takes other importance, as a window
-//! needs it; [`SolvePlugins`] are for an app of one's own, in which any number of domains are solved side by side.
+//! needs it; [`HomunculusPlugins`] are for a Bevy app of one's own, in which any number of domains are solved side by side.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use bevy::prelude::*;
+//! use homunculus::{gallery, prelude::*};
+//!
+//! # fn main() -> Result<(), Error> {
+//! let hand = gallery::open("hand")?;
+//! let importance = Stack::of_vertices(&hand.importance, Vec::new(), 0);
+//! let settings = Settings { resolution: 16, ..Settings::default() };
+//! let domain = Domain::body(Arc::new(hand.model.boundary), Arc::new(importance), settings);
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, HomunculusPlugins));
+//! let domain = domain.spawn(app.world_mut());
+//! while !app.world().get::<Growing>(domain).is_some_and(|growing| growing.0.done()) {
+//!     app.update();
+//! }
+//! // Components hold what the stages have made: the lattice, V', V'', the film of certified states.
+//! let Reel(film) = app.world().get(domain).expect("a film");
+//! assert!(film.keyframes().iter().all(|keyframe| keyframe.certificate.certified()));
+//! # Ok(())
+//! # }
+//! ```
 
 mod domain;
 mod inspect;

@@ -82,7 +82,8 @@ impl Dimension {
 
 /// The simplicial complex of a voxelized domain.
 ///
-/// Topology only speaks of node indices: two nodes may share a grid position (a split cell), nothing here forbids it.
+/// Topology only speaks of node indices, so two nodes could share a grid position (a cell that was split into two). Nothing
+/// here forbids it; [multigrid](crate::multigrid) does, which finds the parents of a node by its position.
 #[derive(Debug, Clone)]
 pub struct Complex {
     /// Plane or space.
