@@ -102,26 +102,45 @@ fn flat_cell_stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
 ///
 /// Its area is quadratic in time, and positive where its Bernstein coefficients are.
 pub(crate) fn flat_stays_positive(ends: [[Vec3A; 3]; 2]) -> bool {
+    flat_stays_positive_with(star::ROUNDING, ends)
+}
+
+/// As [`flat_stays_positive`], with a rounding bound.
+#[inline(always)]
+pub(super) fn flat_stays_positive_with(rounding: f64, ends: [[Vec3A; 3]; 2]) -> bool {
     let [[u, v], [p, q]] = ends.map(|at| {
         let [a, b, c] = at.map(|p| p.as_dvec3().truncate());
         [b - a, c - a]
     });
     let largest = [u, v, p, q].iter().fold(glam::DVec2::ZERO, |m, e| m.max(e.abs())).max_element();
     let coefficients = [u.perp_dot(v), 0.5 * (u.perp_dot(q) + p.perp_dot(v)), p.perp_dot(q)];
-    stays_above(star::ROUNDING * largest * largest, coefficients, HALVINGS)
+    stays_above(rounding * largest * largest, coefficients, HALVINGS)
 }
 
 /// Bounds the rounding of an element's volume in f32, relative to the cube of its cell's largest component: some forty
 /// roundings of 2⁻²⁴ each.
-const ROUNDING: f32 = 1.0e-5;
+pub(crate) const ROUNDING: f32 = 1.0e-5;
 
 #[inline]
 fn check_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Check {
+    check_cell_with(ROUNDING, f32::MIN_POSITIVE, cell, corners, positions)
+}
+
+/// As [`check_cell`], with a rounding bound and the least one that is trusted.
+#[inline(always)]
+pub(super) fn check_cell_with(
+    rounding: f32,
+    least: f32,
+    cell: usize,
+    corners: &[u32; 8],
+    positions: &[Vec3A],
+) -> Check {
     let at = corners.map(|c| positions[c as usize]);
     // Every element starts at corner 0.
     let from_first = at.map(|p| p - at[0]);
     let largest = from_first.iter().fold(Vec3A::ZERO, |m, e| m.max(e.abs())).max_element();
-    let bound = ROUNDING * largest * largest * largest;
+    let bound = rounding * largest * largest * largest;
+    let in_range = bound > least;
     let mut check = Check { smallest: Some(cell), ..Check::NOTHING };
     // All elements have the diagonal from corner 0 to 7, and each one edge of the three from corner 0 along an axis: three
     // cross products serve all six.
@@ -129,7 +148,7 @@ fn check_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Check {
     let [of_x, of_y, of_z] = [x, y, z].map(|edge| edge.cross(diagonal));
     let volumes = [-xy.dot(of_x), xz.dot(of_x), xy.dot(of_y), -yz.dot(of_y), -xz.dot(of_z), yz.dot(of_z)];
     for (element, volume) in KUHN.into_iter().zip(volumes) {
-        let is_clear = volume > bound && volume.is_finite();
+        let is_clear = in_range && volume > bound && volume.is_finite();
         let mut exact = f64::from(volume);
         if !is_clear {
             let [a, b, c, d] = element.map(|k| at[k].as_dvec3());
@@ -150,13 +169,25 @@ const EDGES: [[[usize; 2]; 4]; 3] =
 const FAR_FROM_SINGULAR: f32 = 0.8;
 const WELL_CONDITIONED: f32 = 1.0e6;
 
+/// Below this the determinant of a cell's mean edges, in cells, says nothing in single precision.
+const LEAST_DETERMINANT: f32 = 1.0e-6;
+
+/// m³ / det M up to which the inverse of a cell's mean edges M, none longer than m, is trusted to be one.
+pub(super) const MOST_SKEWED: f32 = 5.0e4;
+
 /// Whether all elements of a cell are proven to be positive all the way. Never wrongly true.
 ///
 /// An element's edges along the axes are the columns of its deformation gradient F. If ‖B F − I‖ < 1 for a matrix B then
 /// det B and det F have one sign; the set of such F is convex, so it is enough to look at both ends. One
 /// element then tells the sign for all.
 #[inline]
-fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
+fn stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
+    stays_positive_with(MOST_SKEWED, star::ROUNDING, ends)
+}
+
+/// As [`stays_positive`], with the skewness up to which a mean is trusted and the rounding bound of what is left.
+#[inline(always)]
+pub(super) fn stays_positive_with(most_skewed: f32, rounding: f64, [from, to]: [[Vec3A; 8]; 2]) -> bool {
     let mut edges = [[Vec3A::ZERO; 8]; 3];
     for (edges, along) in edges.iter_mut().zip(EDGES) {
         for (k, [a, b]) in along.into_iter().enumerate() {
@@ -166,9 +197,12 @@ fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
     }
     let mean = edges.map(|e| 0.125 * (((e[0] + e[1]) + (e[2] + e[3])) + ((e[4] + e[5]) + (e[6] + e[7]))));
     let middle = Mat3A::from_cols(mean[0], mean[1], mean[2]);
-    if middle.determinant() < 1.0e-6 {
-        return bernstein([from, to]);
+    let determinant = middle.determinant();
+    if determinant < LEAST_DETERMINANT {
+        return bernstein(rounding, [from, to]);
     }
+    let widest = mean.iter().fold(0.0_f32, |m, e| m.max(e.length_squared()));
+    let is_inverse = widest * widest.sqrt() < most_skewed * determinant && determinant.is_finite();
     let inverse = middle.inverse();
     let norm = [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|c| c.length_squared()).iter().sum::<f32>();
     // ‖B e − B m‖ ≤ ‖B‖ ‖e − m‖ for the mean m of edges e, which is enough for most.
@@ -178,8 +212,8 @@ fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
         far += most;
         longest = longest.max(2.0 * (mean.length_squared() + most));
     }
-    if norm * far < FAR_FROM_SINGULAR && norm * longest < WELL_CONDITIONED {
-        return is_positive(KUHN[0], &to) || bernstein([from, to]);
+    if is_inverse && norm * far < FAR_FROM_SINGULAR && norm * longest < WELL_CONDITIONED {
+        return is_positive(KUHN[0], &to) || bernstein(rounding, [from, to]);
     }
     let (mut deviation, mut longest) = (0.0_f32, 0.0_f32);
     for (along, axis) in edges.into_iter().zip([Vec3A::X, Vec3A::Y, Vec3A::Z]) {
@@ -191,7 +225,7 @@ fn stays_positive([from, to]: [[Vec3A; 8]; 2]) -> bool {
         deviation += most;
     }
     let is_linear = deviation < FAR_FROM_SINGULAR && norm * longest < WELL_CONDITIONED;
-    (is_linear && is_positive(KUHN[0], &to)) || bernstein([from, to])
+    (is_linear && is_positive(KUHN[0], &to)) || bernstein(rounding, [from, to])
 }
 
 fn is_positive(element: [usize; 4], at: &[Vec3A; 8]) -> bool {
@@ -199,29 +233,33 @@ fn is_positive(element: [usize; 4], at: &[Vec3A; 8]) -> bool {
     orientation(a, b, c, d) > 0
 }
 
-/// The same, element by element: the volume is cubic in time, and positive where its Bernstein coefficients are.
+/// The same, element by element.
 #[cold]
-fn bernstein([from, to]: [[Vec3A; 8]; 2]) -> bool {
-    KUHN.into_iter().all(|element| {
-        let edges = |at: &[Vec3A; 8]| {
-            let [a, b, c, d] = element.map(|k| at[k].as_dvec3());
-            [b - a, c - a, d - a]
-        };
-        let (start, end) = (edges(&from), edges(&to));
-        let volume = |pick: [usize; 3]| {
-            let [a, b, c]: [DVec3; 3] = std::array::from_fn(|k| [start, end][pick[k]][k]);
-            a.dot(b.cross(c))
-        };
-        let largest = start.iter().chain(&end).fold(DVec3::ZERO, |m, e| m.max(e.abs())).max_element();
-        let third = |picks: [[usize; 3]; 3]| picks.map(volume).iter().sum::<f64>() / 3.0;
-        let coefficients = [
-            volume([0, 0, 0]),
-            third([[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-            third([[1, 1, 0], [1, 0, 1], [0, 1, 1]]),
-            volume([1, 1, 1]),
-        ];
-        stays_above(star::ROUNDING * largest.powi(3), coefficients, HALVINGS)
-    })
+fn bernstein(rounding: f64, [from, to]: [[Vec3A; 8]; 2]) -> bool {
+    KUHN.into_iter().all(|element| element_stays_positive(rounding, element, [&from, &to]))
+}
+
+/// Whether one element of a cell is proven to be positive all the way: its volume is cubic in time, and positive where its
+/// Bernstein coefficients are.
+pub(super) fn element_stays_positive(rounding: f64, element: [usize; 4], [from, to]: [&[Vec3A; 8]; 2]) -> bool {
+    let edges = |at: &[Vec3A; 8]| {
+        let [a, b, c, d] = element.map(|k| at[k].as_dvec3());
+        [b - a, c - a, d - a]
+    };
+    let (start, end) = (edges(from), edges(to));
+    let volume = |pick: [usize; 3]| {
+        let [a, b, c]: [DVec3; 3] = std::array::from_fn(|k| [start, end][pick[k]][k]);
+        a.dot(b.cross(c))
+    };
+    let largest = start.iter().chain(&end).fold(DVec3::ZERO, |m, e| m.max(e.abs())).max_element();
+    let third = |picks: [[usize; 3]; 3]| picks.map(volume).iter().sum::<f64>() / 3.0;
+    let coefficients = [
+        volume([0, 0, 0]),
+        third([[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+        third([[1, 1, 0], [1, 0, 1], [0, 1, 1]]),
+        volume([1, 1, 1]),
+    ];
+    stays_above(rounding * largest.powi(3), coefficients, HALVINGS)
 }
 
 /// Whether a polynomial with these Bernstein coefficients is proven to stay above a bound, in halves where it has to be

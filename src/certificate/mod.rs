@@ -12,7 +12,11 @@
 //! a [`Certificate`] is to check the state, by [`certify`], [`certify_rest`] or together with the way to it by
 //! [`certify_way`].
 
+#[cfg(test)]
+mod attacks;
 mod elements;
+#[cfg(test)]
+mod exact;
 mod fidelity;
 mod motion;
 mod place;
@@ -25,7 +29,7 @@ mod surface;
 mod surfaces;
 mod tree;
 
-pub(crate) use elements::{cell_stays_positive, flat_stays_positive};
+pub(crate) use elements::{ROUNDING as VOLUME_ROUNDING, cell_stays_positive, flat_stays_positive};
 pub use fidelity::{Distortion, Fidelity, RegionFidelity, distortion, fidelity, volume_ratios};
 pub use place::Places;
 pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};

@@ -15,7 +15,7 @@ use std::ops::{Add, Mul};
 
 use glam::{DVec3, Vec3A};
 
-use super::star::{Normals, ROUNDING, SINGLE_ROUNDING};
+use super::star::{Normals, Rounding, SINGLE_ROUNDING, is_in_range};
 
 /// Halvings of a motion at most.
 pub(super) const HALVINGS: u32 = 10;
@@ -27,22 +27,40 @@ pub(super) type Moving = [[DVec3; 3]; 2];
 /// in f32: serves for most. Never wrongly true.
 #[inline]
 pub(super) fn lie_apart(s: [[Vec3A; 3]; 2], t: [[Vec3A; 3]; 2]) -> bool {
+    lie_apart_with(SINGLE_ROUNDING, s, t)
+}
+
+/// As [`lie_apart`], with a rounding bound.
+#[inline(always)]
+pub(super) fn lie_apart_with(rounding: f32, s: [[Vec3A; 3]; 2], t: [[Vec3A; 3]; 2]) -> bool {
     let origin = s[0][0];
     let [s, t] = [s, t].map(|p| p.map(|p| p.map(|p| p - origin)));
     let sum = |p: &[[Vec3A; 3]; 2]| p.iter().flatten().sum::<Vec3A>();
     let direction = sum(&t) - sum(&s);
     let largest = s.iter().chain(&t).flatten().fold(Vec3A::ZERO, |m, p| m.max(p.abs())).max_element();
-    let bound = SINGLE_ROUNDING * largest * direction.abs().element_sum();
+    let bound = rounding * largest * direction.abs().element_sum();
     let gap = |end: usize| {
         let [s, t] = [s[end], t[end]].map(|p| p.map(|p| p.dot(direction)));
         t[0].min(t[1]).min(t[2]) - s[0].max(s[1]).max(s[2])
     };
-    bound > f32::MIN_POSITIVE && gap(0) > bound && gap(1) > bound
+    is_in_range(bound) && gap(0) > bound && gap(1) > bound
 }
 
 /// Whether two moving triangles are proven to have nothing in common but the corners they share, all the way. Never
 /// wrongly true. Ids are equal where corners are the same point. A state is a motion without halvings.
 pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 3], t_ids: [u32; 3], halvings: u32) -> bool {
+    stay_apart_with(Rounding::PROVEN, s, t, s_ids, t_ids, halvings)
+}
+
+/// As [`stay_apart`], with rounding bounds.
+fn stay_apart_with(
+    rounding: Rounding,
+    s: &Moving,
+    t: &Moving,
+    s_ids: [u32; 3],
+    t_ids: [u32; 3],
+    halvings: u32,
+) -> bool {
     let (mut shared, mut count) = ([(0, 0); 3], 0);
     for (i, id) in s_ids.iter().enumerate() {
         if let Some(j) = t_ids.iter().position(|other| other == id) {
@@ -51,43 +69,57 @@ pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 3], t_ids: [u32; 3
         }
     }
     match shared[..count] {
-        [] => halved(s, t, halvings, &|s, t| {
-            let [m, n] = [middle(s), middle(t)];
-            let of_m = normal(&m);
-            if [centre(&n) - centre(&m), of_m, normal(&n)].into_iter().any(|d| is_between(s, t, d)) {
-                return true;
-            }
-            // Side by side in one plane.
-            [m, n].iter().any(|p| (0..3).any(|k| is_between(s, t, of_m.cross(p[(k + 1) % 3] - p[k]))))
-                || is_between(s, t, way_between(&m, &n))
-        }),
-        [(i, j)] => halved(s, t, halvings, &|s, t| {
-            let far = |p: &Moving, k: usize| p.map(|p| [p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]]);
-            let (far_s, far_t) = (far(s, i), far(t, j));
-            let [m, n] = [middle(s), middle(t)];
-            let apart = (centre(&n) - n[j]).normalize_or_zero() - (centre(&m) - m[i]).normalize_or_zero();
-            let serves = |d: DVec3| is_within(&far_s, -d) && is_within(&far_t, d);
-            [apart, normal(&m), -normal(&m), normal(&n), -normal(&n)].into_iter().any(serves) || {
-                let ([a, b], [c, d]) = (ahead(&m, i), ahead(&n, j));
-                serves(nearest_to_origin([-a, -b, c, d]))
-            }
-        }),
+        [] => halved(s, t, halvings, &|s, t| are_apart(rounding, s, t)),
+        [at] => halved(s, t, halvings, &|s, t| are_apart_around(rounding, s, t, at)),
         [(i, j), (k, l)] => {
             // Seen along some direction, both turn the same way around their common edge: they lie on its two sides.
             let opposite = ((k + 3 - i) % 3 == 1) != ((l + 3 - j) % 3 == 1);
-            halved(s, t, halvings, &|s, t| {
-                let flipped = if opposite { *t } else { t.map(|[a, b, c]| [a, c, b]) };
-                let (of_s, of_t) = (Normals::of(*s), Normals::of(flipped));
-                let [m, n] = [of_s, of_t].map(|n| n.coefficients.iter().sum::<DVec3>().normalize_or_zero());
-                of_s.are_along(m + n) && of_t.are_along(m + n)
-            })
+            halved(s, t, halvings, &|s, t| are_apart_across(rounding, s, t, opposite))
         }
         _ => false,
     }
 }
 
+/// Whether a fixed direction sets two triangles without a common corner apart at both ends, in the same order.
+pub(super) fn are_apart(rounding: Rounding, s: &Moving, t: &Moving) -> bool {
+    let [m, n] = [middle(s), middle(t)];
+    let of_m = normal(&m);
+    let is_between = |d: DVec3| is_between(rounding, s, t, d);
+    if [centre(&n) - centre(&m), of_m, normal(&n)].into_iter().any(is_between) {
+        return true;
+    }
+    // Side by side in one plane.
+    [m, n].iter().any(|p| (0..3).any(|k| is_between(of_m.cross(p[(k + 1) % 3] - p[k]))))
+        || is_between(way_between(&m, &n))
+}
+
+/// Whether a fixed plane through a common corner, the i-th of one and the j-th of the other, has the rest of two triangles
+/// on its two sides at both ends.
+pub(super) fn are_apart_around(rounding: Rounding, s: &Moving, t: &Moving, (i, j): (usize, usize)) -> bool {
+    let far = |p: &Moving, k: usize| p.map(|p| [p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]]);
+    let (far_s, far_t) = (far(s, i), far(t, j));
+    let [m, n] = [middle(s), middle(t)];
+    let apart = (centre(&n) - n[j]).normalize_or_zero() - (centre(&m) - m[i]).normalize_or_zero();
+    let misplaced = 2.0 * rounding.midpoint * furthest(s).max(furthest(t));
+    let is_within = |far: &[[DVec3; 2]; 2], d: DVec3| is_within(rounding.product, misplaced, far, d);
+    let serves = |d: DVec3| is_within(&far_s, -d) && is_within(&far_t, d);
+    [apart, normal(&m), -normal(&m), normal(&n), -normal(&n)].into_iter().any(serves) || {
+        let ([a, b], [c, d]) = (ahead(&m, i), ahead(&n, j));
+        serves(nearest_to_origin([-a, -b, c, d]))
+    }
+}
+
+/// Whether two triangles with a common edge, which they have in opposite order or not, are seen side by side along a fixed
+/// direction at every instant between two ends.
+pub(super) fn are_apart_across(rounding: Rounding, s: &Moving, t: &Moving, opposite: bool) -> bool {
+    let flipped = if opposite { *t } else { t.map(|[a, b, c]| [a, c, b]) };
+    let (of_s, of_t) = (Normals::of(*s, rounding), Normals::of(flipped, rounding));
+    let [m, n] = [of_s, of_t].map(|n| n.coefficients.iter().sum::<DVec3>().normalize_or_zero());
+    of_s.are_along(m + n) && of_t.are_along(m + n)
+}
+
 /// Corners at both ends of a motion.
-type Corners<V, const N: usize> = [[V; N]; 2];
+pub(super) type Corners<V, const N: usize> = [[V; N]; 2];
 
 /// Whether a proof comes out for a motion of two, or for its halves, theirs and so on.
 pub(super) fn halved<V, const N: usize>(
@@ -109,7 +141,7 @@ where
     halved(&[s[0], m], &[t[0], n], halvings - 1, proof) && halved(&[m, s[1]], &[n, t[1]], halvings - 1, proof)
 }
 
-fn middle<V, const N: usize>(p: &Corners<V, N>) -> [V; N]
+pub(super) fn middle<V, const N: usize>(p: &Corners<V, N>) -> [V; N]
 where
     V: Copy + Add<Output = V> + Mul<f64, Output = V>,
 {
@@ -173,9 +205,9 @@ fn way_between_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
 }
 
 /// Whether all of one lies strictly before all of the other along a direction, at both ends in the same order.
-fn is_between(s: &Moving, t: &Moving, direction: DVec3) -> bool {
-    let largest = s.iter().chain(t).flatten().fold(DVec3::ZERO, |m, p| m.max(p.abs())).max_element();
-    let bound = ROUNDING * largest * direction.abs().element_sum();
+fn is_between(rounding: Rounding, s: &Moving, t: &Moving, direction: DVec3) -> bool {
+    let largest = furthest(s).max(furthest(t));
+    let bound = rounding.product * largest * direction.abs().element_sum();
     let range = |p: &[DVec3; 3]| {
         let along = p.map(|p| p.dot(direction));
         (along[0].min(along[1]).min(along[2]), along[0].max(along[1]).max(along[2]))
@@ -185,10 +217,15 @@ fn is_between(s: &Moving, t: &Moving, direction: DVec3) -> bool {
         || ranges.iter().all(|((low, _), (_, high))| low - high > bound)
 }
 
+/// Largest coordinate of a moving triangle.
+fn furthest(p: &Moving) -> f64 {
+    p.iter().flatten().fold(DVec3::ZERO, |m, p| m.max(p.abs())).max_element()
+}
+
 /// Whether offsets from a common corner lie strictly on one side of the plane across a direction, at both ends.
-fn is_within(far: &[[DVec3; 2]; 2], direction: DVec3) -> bool {
+fn is_within(rounding: f64, misplaced: f64, far: &[[DVec3; 2]; 2], direction: DVec3) -> bool {
     let sum = direction.abs().element_sum();
-    far.iter().flatten().all(|offset| offset.dot(direction) > ROUNDING * offset.abs().max_element() * sum)
+    far.iter().flatten().all(|offset| offset.dot(direction) > (rounding * offset.abs().max_element() + misplaced) * sum)
 }
 
 #[cfg(test)]

@@ -23,15 +23,23 @@ fn coord(p: DVec3) -> Coord3D<f64> {
 
 /// Sign of `det[b − a, c − a, d − a]`: +1 for a positively oriented tetrahedron. Exact.
 pub fn orientation(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
+    orientation_with(ROUNDING, a, b, c, d)
+}
+
+/// Bounds the rounding of a determinant of three differences, relative to its permanent.
+pub(super) const ROUNDING: f64 = 1.0e-14;
+
+/// As [`orientation`], with a rounding bound for the first look.
+#[inline(always)]
+pub(super) fn orientation_with(rounding: f64, a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     let (u, v, w) = (b - a, c - a, d - a);
     let det = u.dot(v.cross(w));
-    // Shewchuk's stage A, with a bound rounded up: |error| ≤ 8 ε · permanent, and the differences add a little.
     let permanent = u.abs().dot(DVec3::new(
         v.y.abs() * w.z.abs() + v.z.abs() * w.y.abs(),
         v.z.abs() * w.x.abs() + v.x.abs() * w.z.abs(),
         v.x.abs() * w.y.abs() + v.y.abs() * w.x.abs(),
     ));
-    let bound = 1.0e-14 * permanent;
+    let bound = rounding * permanent;
     if det > bound {
         return 1;
     }

@@ -20,6 +20,22 @@ const STARS_PER_TASK: usize = 512;
 /// components: some thirty roundings of 2⁻⁵³ each, and room.
 pub(super) const ROUNDING: f64 = 1.0e-13;
 
+/// Bounds how far off a coordinate is at an instant that a motion was cut at, relative to itself.
+pub(super) const MIDPOINT: f64 = 12.0 * 0.5 * f64::EPSILON;
+
+/// The bounds of a proof in double precision; tests lower them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rounding {
+    /// As [`ROUNDING`].
+    pub product: f64,
+    /// As [`MIDPOINT`].
+    pub midpoint: f64,
+}
+
+impl Rounding {
+    pub const PROVEN: Self = Self { product: ROUNDING, midpoint: MIDPOINT };
+}
+
 /// Closed fans of a surface, by vertex identity.
 #[derive(Debug, Clone)]
 pub(super) struct Stars {
@@ -61,6 +77,16 @@ impl Stars {
 
     /// `[identities]` stars whose triangles are proven not to cross each other, at one state or all the way between two.
     pub fn proven<const ENDS: usize>(&self, triangles: &[[u32; 3]], ends: [&[Vec3A]; ENDS]) -> Vec<bool> {
+        self.proven_with(SINGLE_ROUNDING, triangles, ends)
+    }
+
+    /// As [`proven`](Self::proven), with a rounding bound.
+    pub fn proven_with<const ENDS: usize>(
+        &self,
+        rounding: f32,
+        triangles: &[[u32; 3]],
+        ends: [&[Vec3A]; ENDS],
+    ) -> Vec<bool> {
         let normals: Vec<Facing> = triangles
             .par_iter()
             .with_min_len(STARS_PER_TASK)
@@ -71,7 +97,7 @@ impl Stars {
             .with_min_len(STARS_PER_TASK)
             .map(|v| {
                 let fan = &self.corners[self.start[v] as usize..self.start[v + 1] as usize];
-                !fan.is_empty() && is_seen_whole(fan, triangles, &normals, ends[0])
+                !fan.is_empty() && is_seen_whole(rounding, fan, triangles, &normals, ends[0])
             })
             .collect()
     }
@@ -104,32 +130,35 @@ fn is_closed_fan(identities: &[[u32; 3]], around: &[(u32, u8)]) -> bool {
 #[derive(Clone, Copy)]
 pub(super) struct Normals {
     pub coefficients: [DVec3; 3],
-    /// Largest component of the edges: bounds the rounding.
-    largest: f64,
+    /// Bounds the error of `coefficients · d`, per sum of the components of d.
+    error: f64,
 }
 
 impl Normals {
     #[inline]
-    pub fn of<const ENDS: usize>(ends: [[DVec3; 3]; ENDS]) -> Self {
+    pub fn of(ends: [[DVec3; 3]; 2], rounding: Rounding) -> Self {
+        let largest = |v: DVec3, m: DVec3| m.max(v.abs());
         let edges = ends.map(|[a, b, c]| [b - a, c - a]);
-        let largest = edges.iter().flatten().fold(DVec3::ZERO, |m, e| m.max(e.abs())).max_element();
-        let [[u, v], [x, y]] = [edges[0], edges[ENDS - 1]];
-        let start = u.cross(v);
-        let coefficients = if ENDS == 1 { [start; 3] } else { [start, 0.5 * (u.cross(y) + x.cross(v)), x.cross(y)] };
-        Self { coefficients, largest }
+        let longest = edges.iter().flatten().fold(DVec3::ZERO, |m, e| largest(*e, m)).max_element();
+        let furthest = ends.iter().flatten().fold(DVec3::ZERO, |m, p| largest(*p, m)).max_element();
+        let [[u, v], [x, y]] = edges;
+        let coefficients = [u.cross(v), 0.5 * (u.cross(y) + x.cross(v)), x.cross(y)];
+        let misplaced = 2.0 * rounding.midpoint * furthest;
+        let error = rounding.product * longest * longest + 2.0 * misplaced * (2.0 * longest + misplaced);
+        Self { coefficients, error }
     }
 
     /// Whether the triangle is positively oriented along a direction all the way; never wrongly true.
     #[inline]
     pub fn are_along(&self, direction: DVec3) -> bool {
-        let bound = ROUNDING * self.largest * self.largest * direction.abs().element_sum();
+        let bound = self.error * direction.abs().element_sum();
         self.coefficients.iter().all(|n| n.dot(direction) > bound)
     }
 }
 
 /// The same as [`Normals`] in f32.
 #[derive(Clone, Copy)]
-struct Facing {
+pub(super) struct Facing {
     coefficients: [Vec3A; 3],
     largest: f32,
 }
@@ -139,7 +168,7 @@ pub(super) const SINGLE_ROUNDING: f32 = 6.0e-6;
 
 impl Facing {
     #[inline]
-    fn of<const ENDS: usize>(ends: [[Vec3A; 3]; ENDS]) -> Self {
+    pub fn of<const ENDS: usize>(ends: [[Vec3A; 3]; ENDS]) -> Self {
         let edges = ends.map(|[a, b, c]| [b - a, c - a]);
         let largest = edges.iter().flatten().fold(Vec3A::ZERO, |m, e| m.max(e.abs())).max_element();
         let [[u, v], [x, y]] = [edges[0], edges[ENDS - 1]];
@@ -155,19 +184,35 @@ impl Facing {
     /// Whether the triangle is positively oriented along a unit vector all the way; never wrongly true. Where products
     /// leave the range of f32, it is not proven.
     #[inline]
-    fn is_along(&self, direction: Vec3A) -> bool {
-        let bound = SINGLE_ROUNDING * self.largest * self.largest * SUM_OF_UNIT;
-        bound > f32::MIN_POSITIVE && self.coefficients.iter().all(|n| n.dot(direction) > bound)
+    pub fn is_along(&self, rounding: f32, direction: Vec3A) -> bool {
+        let bound = rounding * self.largest * self.largest * SUM_OF_UNIT;
+        is_in_range(bound) && self.coefficients.iter().all(|n| n.dot(direction) > bound)
     }
 }
+
+/// Whether a bound of rounding in f32 is large enough to hold what is lost below the range of f32 as well, and small enough
+/// that nothing it bounds has left that range above.
+#[inline]
+pub(super) fn is_in_range(bound: f32) -> bool {
+    bound > f32::MIN_POSITIVE && bound < LARGEST_BOUND
+}
+
+/// Products that are bounded by a hundred thousand times this stay finite.
+const LARGEST_BOUND: f32 = 1.0e30;
 
 /// The components of a unit vector sum up to at most this, and room.
 const SUM_OF_UNIT: f32 = 1.8;
 
 /// Whether a closed fan is seen without overlap along the sum of its normals. Never wrongly true.
-fn is_seen_whole(fan: &[(u32, u8)], triangles: &[[u32; 3]], normals: &[Facing], start: &[Vec3A]) -> bool {
+fn is_seen_whole(
+    rounding: f32,
+    fan: &[(u32, u8)],
+    triangles: &[[u32; 3]],
+    normals: &[Facing],
+    start: &[Vec3A],
+) -> bool {
     let direction = fan.iter().map(|&(t, _)| normals[t as usize].sum()).sum::<Vec3A>().normalize_or_zero();
-    if !fan.iter().all(|&(t, _)| normals[t as usize].is_along(direction)) {
+    if !fan.iter().all(|&(t, _)| normals[t as usize].is_along(rounding, direction)) {
         return false;
     }
     // Every triangle turns the same way by less than half a turn, so each time around passes once from behind a plane to
@@ -177,7 +222,7 @@ fn is_seen_whole(fan: &[(u32, u8)], triangles: &[[u32; 3]], normals: &[Facing], 
     for &(t, k) in fan {
         let k = usize::from(k);
         let at = triangles[t as usize].map(|v| start[v as usize]);
-        let bound = SINGLE_ROUNDING * normals[t as usize].largest * SUM_OF_UNIT;
+        let bound = rounding * normals[t as usize].largest * SUM_OF_UNIT;
         let [a, b] = [1, 2].map(|step| across.dot(at[(k + step) % 3] - at[k]));
         if a.abs() <= bound || b.abs() <= bound {
             return false;

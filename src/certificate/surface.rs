@@ -18,23 +18,31 @@ const PAIRS_PER_TASK: usize = 1024;
 
 /// A triangle with its plane, for proving others apart from it.
 #[derive(Debug, Clone, Copy)]
-struct Plane {
+pub(super) struct Plane {
     at: [Vec3A; 3],
     /// `(b − a) × (c − a)`.
     normal: DVec3,
-    /// Bounds the rounding of `normal · (p − a)`, per largest coordinate of `p − a`: the same 1e-14 of the permanent as
-    /// in [`orientation`](super::orientation), with room for the two forms' different order of sums.
+    /// Bounds the rounding of `normal · (p − a)`, per largest coordinate of `p − a`.
     error: f64,
 }
+
+/// Bounds the rounding of `normal · (p − a)`, relative to the permanent of the normal and the largest coordinate of `p − a`.
+pub(super) const PLANE_ROUNDING: f64 = 1.0e-14;
 
 impl Plane {
     #[inline]
     fn of(at: [Vec3A; 3]) -> Self {
+        Self::with(PLANE_ROUNDING, at)
+    }
+
+    /// As [`of`](Self::of), with a rounding bound.
+    #[inline(always)]
+    pub(super) fn with(rounding: f64, at: [Vec3A; 3]) -> Self {
         let [a, b, c] = at.map(|p| p.as_dvec3());
         let (u, v) = (b - a, c - a);
         let (p, q) = (u.abs(), v.abs());
         let permanent = p.y * q.z + p.z * q.y + p.z * q.x + p.x * q.z + p.x * q.y + p.y * q.x;
-        Self { at, normal: u.cross(v), error: 1.0e-14 * permanent }
+        Self { at, normal: u.cross(v), error: rounding * permanent }
     }
 
     #[inline]
@@ -45,7 +53,7 @@ impl Plane {
 
     /// Whether all corners of `other` that are not shared lie strictly, and provably, on one side of this plane.
     #[inline]
-    fn is_apart(&self, other: &Self, own_ids: &[u32; 3], other_ids: &[u32; 3]) -> bool {
+    pub(super) fn is_apart(&self, other: &Self, own_ids: &[u32; 3], other_ids: &[u32; 3]) -> bool {
         let origin = self.at[0].as_dvec3();
         let (mut above, mut below) = (false, false);
         for (corner, id) in other.at.iter().zip(other_ids) {

@@ -10,7 +10,7 @@ use glam::Vec3A;
 use rayon::prelude::*;
 
 use crate::{
-    certificate::{BySurface, Checked, cell_stays_positive, enclosed_solids, is_positive},
+    certificate::{BySurface, Checked, VOLUME_ROUNDING, cell_stays_positive, enclosed_solids, is_positive},
     voxel::{CHUNK, Complex, Dimension, blend},
 };
 
@@ -193,15 +193,18 @@ fn bad_cells(
                 }
                 let floor = VOLUME_FLOOR * dimension.measure(size[chunk * CELLS_PER_TASK + k]);
                 let at = corners.map(|c| proposed[c as usize]);
+                // All elements start at corner 0.
+                let largest = at.iter().fold(Vec3A::ZERO, |m, p| m.max((*p - at[0]).abs())).max_element();
+                let bound = VOLUME_ROUNDING * dimension.measure(largest);
                 for element in dimension.elements() {
                     let volume = determinant(dimension, element.map(|c| at[c]));
-                    if volume > floor {
+                    if volume > floor.max(bound) {
                         continue;
                     }
                     let nodes = element.map(|c| corners[c]);
                     let positive = is_positive(dimension, element.map(|c| at[c].as_dvec3()));
                     let before = determinant(dimension, nodes.map(|c| current[c as usize]));
-                    if !positive || volume < before {
+                    if !positive || (volume <= floor && volume < before) {
                         bad.extend(nodes);
                     }
                 }
