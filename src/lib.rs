@@ -34,7 +34,8 @@
 //!
 //! - A state is *certified* when every element is positively oriented, no two faces of the complex's skin cross, no body
 //!   lies within another, and the surface that is written has no crossing the input had not. Signs are exact; touching
-//!   counts as crossing. Blends between two keyframes are checked at several places, not proven throughout.
+//!   counts as crossing. Blends between two keyframes are proven to be valid at every
+//!   instant (see [`certificate`]).
 //! - The collision optimization starts at rest, which is valid, and its [guard](collision::guard) lets a step through
 //!   only where the next state is valid too.
 //! - The same input gives the same bits for any number of threads: loops gather, sums go in fixed chunks.

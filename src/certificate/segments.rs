@@ -2,12 +2,19 @@
 //!
 //! # Theory
 //! Two segments are apart if one lies strictly on one side of the other's line. On which side a moving point lies of a
-//! moving line is quadratic in time, and has one sign all the way if its three Bernstein coefficients have. What lies on
+//! moving line is quadratic in time, and has one sign at every instant if its three Bernstein coefficients have. What lies on
 //! one line is set apart by a fixed direction. Segments from one common point have only that in common unless they run
 //! along each other: their cross product keeps its sign, or their dot product stays negative.
 //!
 //! Where none of this holds for the whole motion, its halves are looked at. Segments that keep any distance are proven so
-//! in the end; what is left comes nearer than a part in 2^[`HALVINGS`] of the way.
+//! in the end; what is left comes nearer than a part in 2^[`HALVINGS`] of the motion.
+//!
+//! # Rounding
+//! Double precision. A product of two differences u, v of sizes at most L and L': 2 differences, the product, a sum, and the mean of two:
+//! n = 5, Σ |terms| ≤ 2 L L': 10 u L L' = 1.1e-15 L L', against 1e-13. Where the motion was cut, differences are off by e =
+//! 2 · [`MIDPOINT`](super::star::MIDPOINT) · X (page `motion`), which changes a product by at most L e + L' e + e² in each of two
+//! terms: 2 e (L + L' + e) more. Along a direction: n = 3 for a dot product of differences from one point, one for the gap: 8 u L S, and e S for the
+//! corners.
 
 use glam::DVec2;
 

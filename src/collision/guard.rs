@@ -172,8 +172,22 @@ impl Step<'_> {
     }
 }
 
-/// Nodes of elements that the step would break, cell by cell.
+/// Nodes of elements that the step would break, cell by cell. A volume above the floor counts only where it is also above what
+/// rounding can make of a volume that is not positive: elements that are long beside the size asked for are told exactly.
 fn bad_cells(
+    complex: &Complex,
+    size: &[f32],
+    current: &[Vec3A],
+    proposed: &[Vec3A],
+    moved: Option<&[bool]>,
+) -> Vec<u32> {
+    bad_cells_with(VOLUME_ROUNDING, complex, size, current, proposed, moved)
+}
+
+/// As [`bad_cells`], with a rounding bound.
+#[inline(always)]
+fn bad_cells_with(
+    rounding: f32,
     complex: &Complex,
     size: &[f32],
     current: &[Vec3A],
@@ -195,7 +209,7 @@ fn bad_cells(
                 let at = corners.map(|c| proposed[c as usize]);
                 // All elements start at corner 0.
                 let largest = at.iter().fold(Vec3A::ZERO, |m, p| m.max((*p - at[0]).abs())).max_element();
-                let bound = VOLUME_ROUNDING * dimension.measure(largest);
+                let bound = rounding * dimension.measure(largest);
                 for element in dimension.elements() {
                     let volume = determinant(dimension, element.map(|c| at[c]));
                     if volume > floor.max(bound) {
@@ -233,4 +247,45 @@ pub fn limit(current: &[Vec3A], proposed: &mut [Vec3A], most: impl Fn(usize) -> 
             *p = *x + step * (most / length);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{certificate::exact, voxel::Grid};
+    use glam::{DVec3, UVec3};
+
+    /// How many elements of long flat cells, for which small sizes are asked, are let through though they are not positive.
+    fn let_through(rounding: f32) -> usize {
+        let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::ONE };
+        let complex = Complex::from_cells(grid, &[true]);
+        let mut state = 1_u64;
+        let mut number = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1 << 23) as f32 - 1.0
+        };
+        let mut missed = 0;
+        for _ in 0..4000 {
+            let [u, v] = [0; 2].map(|_| 3.0 * Vec3A::new(number(), number(), number()));
+            // All nodes in one plane, but for what the last places of their coordinates make of it.
+            let proposed: Vec<Vec3A> = complex.rest.iter().map(|_| number() * u + number() * v).collect();
+            let bad = bad_cells_with(rounding, &complex, &[0.02], &complex.rest, &proposed, None);
+            for element in (0..complex.elements()).map(|t| complex.element(t)) {
+                let places = element.map(|node| exact::place([proposed[node as usize]; 2], 0));
+                missed += usize::from(exact::orientation(places) <= 0 && !bad.chunks(4).any(|b| b == element));
+            }
+        }
+        missed
+    }
+
+    #[test]
+    fn elements_that_are_long_beside_their_size_are_told_exactly() {
+        assert_eq!(let_through(VOLUME_ROUNDING), 0);
+    }
+
+    /// Until this was a test, the floor of volumes was taken to be above all rounding.
+    #[test]
+    fn sabotage_without_a_bound_inverted_elements_are_let_through() {
+        assert!(let_through(0.0) > 0);
+    }
 }

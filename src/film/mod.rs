@@ -1,8 +1,9 @@
 //! The film: certified states at λ_0 = 0 < … < λ_K = 1.
 //!
 //! Playback, scrubbing, recording and export read the film and never solve again. Between two keyframes a state is their
-//! linear blend, which need not be injective because both ends are: blends are checked as well, and where one fails the
-//! film keeps more of what was solved between.
+//! linear blend, which need not be injective because both ends are. So the motion from one to the next is proven to be valid
+//! at every instant, and where that fails the film keeps more of what was solved between, or draws the later one back.
+//! Since the first keyframe is the rest state, every state of the film hangs together with it by proven motions.
 
 pub mod plugin;
 

@@ -278,49 +278,6 @@ fn sabotage_bodies_that_change_places_have_no_clear_way() {
     assert!(certificate.certified() && !clear);
 }
 
-/// Two cells two apart, and where the second goes so that its edge is beside the other's from `enters` of the way on and
-/// above it from `leaves` on.
-fn passing(enters: f32, leaves: f32) -> (Complex, Vec<Vec3A>) {
-    let complex = complex(IVec3::new(3, 1, 1), |c| c.x != 1);
-    let by = Vec3A::new(-1.0 / enters, 1.0 / leaves, 0.0);
-    let moved = |(p, &body): (&Vec3A, &u32)| if body == complex.body[0] { *p } else { *p + by };
-    let to = complex.rest.iter().zip(&complex.body).map(moved).collect();
-    (complex, to)
-}
-
-#[test]
-fn an_edge_that_passes_another_is_proven_to() {
-    let (complex, to) = passing(0.92, 0.918);
-    let (certificate, clear) = way(&complex, &Surfaces::skin_of(&complex), &complex.rest, &to);
-    assert!(certificate.certified() && clear);
-}
-
-#[test]
-fn sabotage_an_edge_that_cuts_another_between_two_eighths_is_seen() {
-    // 0.918 to 0.92 of the way, while none of the eighths of it is at fault.
-    let (complex, to) = passing(0.918, 0.92);
-    let surfaces = Surfaces::skin_of(&complex);
-    for eighths in 0..=8_u8 {
-        let between = blend(&complex.rest, &to, f32::from(eighths) / 8.0);
-        assert!(certify(&complex, &surfaces, &between).certified());
-    }
-    assert!(!certify(&complex, &surfaces, &blend(&complex.rest, &to, 0.919)).certified());
-    let (certificate, clear) = way(&complex, &surfaces, &complex.rest, &to);
-    assert!(certificate.certified() && !clear);
-}
-
-#[test]
-fn a_body_is_not_swallowed_by_another() {
-    let (complex, mut positions) = mote();
-    assert_eq!((complex.bodies, fault(&complex, &positions)), (2, Ok(())));
-    let surfaces = Surfaces::skin_of(&complex);
-    let problem = Problem::new(&complex, &vec![1.0; complex.nodes()], 0.5);
-    let asked = grow(&complex, &problem, 1.0);
-    let proposed = lifted(&complex, &positions, 0.45);
-    guard_step(&complex, &asked, &surfaces, &mut positions, proposed, &mut Vec::new());
-    assert_eq!(fault(&complex, &positions), Ok(()));
-}
-
 #[test]
 fn the_certificate_tells_a_swallowed_body() {
     let (complex, positions) = mote();
