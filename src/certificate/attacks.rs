@@ -485,7 +485,7 @@ fn wrong_signs(rounding: f64, plane_rounding: f64) -> [usize; 2] {
             at[3].x = f64::from((at[3].x as f32).next_up());
         }
         let [a, b, c, d] = [at[0], at[1], at[2], at[3]];
-        let places = [a, b, c, d].map(|p| exact::place_of(p));
+        let places = [a, b, c, d].map(exact::place_of);
         predicates::orientation_with(rounding, a, b, c, d) != exact::orientation(places)
     });
     let planes = count(20_000, |random| {

@@ -12,7 +12,7 @@
 //! is not positive, it is cut into halves (de Casteljau), of which each has coefficients of its own, nearer to the values.
 //! In double precision: n = 8 for each determinant, 2 more for the sum of three and 1 for the division, Σ |terms| ≤ 18 M³ / 3 = 6 M³:
 //! error ≤ 66 u M³. Cutting takes means of neighbours. A mean makes no error larger and adds one rounding of at most 6 u M³; a cubic
-//! takes three means in a row for a half, and there are ten halvings: 180 u M³ more. In all 246 u M³ = 2.8e-14 M³, against 1e-13
+//! takes three means in a row for a half, and a motion is subdivided ten times: 180 u M³ more. In all 246 u M³ = 2.8e-14 M³, against 1e-13
 //! ([`star::ROUNDING`]). In the plane: n = 5 for the mean of two products of differences, Σ |terms| ≤ 2 M², and 20 means of 2 u M²: 50 u M² =
 //! 5.6e-15 M².
 //!
@@ -43,7 +43,7 @@ use glam::{DVec3, Mat3A, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    motion::HALVINGS,
+    motion::SUBDIVISION_DEPTH,
     predicates::{self, orientation},
     star,
 };
@@ -89,8 +89,8 @@ pub(super) fn inverted_cells(complex: &Complex, positions: &[Vec3A]) -> Vec<usiz
         .collect()
 }
 
-/// Checks all elements of the state `to`, and whether they are proven to be positive all the way there.
-pub(super) fn check_way(complex: &Complex, from: &[Vec3A], to: &[Vec3A]) -> (Check, bool) {
+/// Checks all elements of the state `to`, and whether they are proven to be positive at every instant of the motion there.
+pub(super) fn check_motion(complex: &Complex, from: &[Vec3A], to: &[Vec3A]) -> (Check, bool) {
     let check_cell = checker(complex.dimension);
     let stays_positive = cell_stays_positive(complex.dimension);
     cells(complex)
@@ -104,7 +104,7 @@ fn cells(complex: &Complex) -> impl IndexedParallelIterator<Item = (usize, &[u32
     complex.corners.par_iter().enumerate().with_min_len(CELLS_PER_TASK)
 }
 
-/// What proves that all elements of a cell stay positive all the way of a straight motion.
+/// What proves that all elements of a cell stay positive at every instant of a straight motion.
 pub(crate) fn cell_stays_positive(dimension: Dimension) -> fn([[Vec3A; 8]; 2]) -> bool {
     match dimension {
         Dimension::Two => flat_cell_stays_positive,
@@ -132,12 +132,12 @@ fn check_flat_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Chec
     check
 }
 
-/// Whether both elements of a flat cell are proven to be positive all the way of a straight motion. Never wrongly true.
+/// Whether both elements of a flat cell are proven to be positive at every instant of a straight motion. Never wrongly true.
 fn flat_cell_stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
     Dimension::Two.elements().iter().all(|&[a, b, c, _]| flat_stays_positive(ends.map(|at| [at[a], at[b], at[c]])))
 }
 
-/// Whether a triangle of the plane is proven to be positive all the way of a straight motion. Never wrongly true.
+/// Whether a triangle of the plane is proven to be positive at every instant of a straight motion. Never wrongly true.
 ///
 /// Its area is quadratic in time, and positive where its Bernstein coefficients are.
 pub(crate) fn flat_stays_positive(ends: [[Vec3A; 3]; 2]) -> bool {
@@ -153,7 +153,7 @@ pub(super) fn flat_stays_positive_with(rounding: f64, ends: [[Vec3A; 3]; 2]) -> 
     });
     let largest = [u, v, p, q].iter().fold(glam::DVec2::ZERO, |m, e| m.max(e.abs())).max_element();
     let coefficients = [u.perp_dot(v), 0.5 * (u.perp_dot(q) + p.perp_dot(v)), p.perp_dot(q)];
-    stays_above(rounding * largest * largest, coefficients, HALVINGS)
+    stays_above(rounding * largest * largest, coefficients, SUBDIVISION_DEPTH)
 }
 
 /// Bounds the rounding of an element's volume in f32, relative to the cube of its cell's largest component: 48 roundings of
@@ -215,7 +215,7 @@ const LEAST_DETERMINANT: f32 = 1.0e-6;
 /// then. Twice as much would leave nothing of the tenth.
 pub(super) const MOST_SKEWED: f32 = 5.0e4;
 
-/// Whether all elements of a cell are proven to be positive all the way: see the page. Never wrongly true.
+/// Whether all elements of a cell are proven to be positive at every instant: see the page. Never wrongly true.
 #[inline]
 fn stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
     stays_positive_with(MOST_SKEWED, star::ROUNDING, ends)
@@ -275,7 +275,7 @@ fn bernstein(rounding: f64, [from, to]: [[Vec3A; 8]; 2]) -> bool {
     KUHN.into_iter().all(|element| element_stays_positive(rounding, element, [&from, &to]))
 }
 
-/// Whether one element of a cell is proven to be positive all the way: its volume is cubic in time, and positive where its
+/// Whether one element of a cell is proven to be positive at every instant: its volume is cubic in time, and positive where its
 /// Bernstein coefficients are.
 pub(super) fn element_stays_positive(rounding: f64, element: [usize; 4], [from, to]: [&[Vec3A; 8]; 2]) -> bool {
     let edges = |at: &[Vec3A; 8]| {
@@ -295,12 +295,12 @@ pub(super) fn element_stays_positive(rounding: f64, element: [usize; 4], [from, 
         third([[1, 1, 0], [1, 0, 1], [0, 1, 1]]),
         volume([1, 1, 1]),
     ];
-    stays_above(rounding * largest.powi(3), coefficients, HALVINGS)
+    stays_above(rounding * largest.powi(3), coefficients, SUBDIVISION_DEPTH)
 }
 
 /// Whether a polynomial with these Bernstein coefficients is proven to stay above a bound, in halves where it has to be
 /// (de Casteljau).
-fn stays_above<const N: usize>(bound: f64, mut coefficients: [f64; N], halvings: u32) -> bool {
+fn stays_above<const N: usize>(bound: f64, mut coefficients: [f64; N], depth: u32) -> bool {
     // Both ends are values.
     if !(coefficients[0] > bound && coefficients[N - 1] > bound) {
         return false;
@@ -308,7 +308,7 @@ fn stays_above<const N: usize>(bound: f64, mut coefficients: [f64; N], halvings:
     if coefficients.iter().all(|&c| c > bound) {
         return true;
     }
-    if halvings == 0 {
+    if depth == 0 {
         return false;
     }
     let mut first = coefficients;
@@ -318,5 +318,5 @@ fn stays_above<const N: usize>(bound: f64, mut coefficients: [f64; N], halvings:
         }
         *of_first = coefficients[0];
     }
-    stays_above(bound, first, halvings - 1) && stays_above(bound, coefficients, halvings - 1)
+    stays_above(bound, first, depth - 1) && stays_above(bound, coefficients, depth - 1)
 }

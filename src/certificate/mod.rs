@@ -36,7 +36,7 @@
 //! since voxelization fills them. Pictures have holes, and for these a single state is not proven by conditions 1 to 3: it takes
 //! a *motion* from a state that is, such as the rest state. While the skin moves without meeting itself, the degree at a point
 //! changes only when the skin passes over it, and by the same amount at every face for ever; so what was injective stays it.
-//! [`certify_way`] proves motions, and the keyframes of a [film](crate::film) hang together by such proofs from the rest state on.
+//! [`certify_motion`] proves motions, and the keyframes of a [film](crate::film) hang together by such proofs from the rest state on.
 //!
 //! The surface that is written, B', is made of flat triangles between vertices that φ moves. It is another map, so it is checked
 //! too: it must have no crossing that the input had not. In the plane its triangles must be positively oriented. Triangles without area at rest
@@ -84,9 +84,9 @@
 //! # Practice
 //! Exact signs (crate `robust`) behind a filter of rounding bounds; boxes in a tree that is refitted. Touching counts as crossing.
 //! Most is proven at once and without exact signs: whole cells by how little they differ from a linear map, the
-//! triangles around a vertex by being seen side by side, and both also for all blends of two states. The one way to make
-//! a [`Certificate`] is to check the state, by [`certify`], [`certify_rest`] or together with the motion to it by
-//! [`certify_way`].
+//! triangles around a vertex by being seen side by side, and both also for all blends of two states. Only a check makes a
+//! [`Certificate`]: that of a state by [`certify`] or [`certify_rest`], or together with the motion to it by
+//! [`certify_motion`].
 
 #[cfg(test)]
 mod attacks;
@@ -109,7 +109,7 @@ pub(crate) use elements::{ROUNDING as VOLUME_ROUNDING, cell_stays_positive, flat
 pub use fidelity::{Distortion, Fidelity, RegionFidelity, distortion, fidelity, volume_ratios};
 pub use place::Places;
 pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};
-pub use shell::{Placed, Shell};
+pub use shell::{CarriedState, Shell};
 pub use surface::Surface;
 pub(crate) use surfaces::BySurface;
 pub use surfaces::{Checked, Surfaces};
@@ -120,7 +120,7 @@ use rayon::prelude::*;
 
 use crate::voxel::{Complex, Dimension};
 
-/// What the check of one state found. Only [`certify`], [`certify_rest`] and [`certify_way`] make one.
+/// What the check of one state found. Only [`certify`], [`certify_rest`] and [`certify_motion`] make one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     inverted: usize,
@@ -192,22 +192,22 @@ fn check(
     conclude(complex, surfaces, positions, elements, &BySurface { skin, written })
 }
 
-/// Checks a state like [`certify`], and the straight way to it from a valid one: whether every blend of the two is proven
-/// to be valid, at every instant. What keeps apart on the way does not come to lie within another either.
-pub fn certify_way<'a>(
+/// Checks a state like [`certify`], and the straight motion to it from a valid one: whether every blend of the two is proven
+/// to be valid, at every instant. What keeps apart during the motion does not come to lie within another either.
+pub fn certify_motion<'a>(
     complex: &Complex,
     surfaces: impl Into<Checked<'a>>,
-    from: &Placed,
-    to: &Placed,
+    from: &CarriedState,
+    to: &CarriedState,
 ) -> (Certificate, bool) {
     let surfaces = surfaces.into();
     let ((elements, unfolded), found) =
-        rayon::join(|| elements::check_way(complex, from.nodes(), to.nodes()), || to.crossings_from(from, surfaces));
-    let clear = unfolded && found.iter().all(|(_, clear)| *clear) && to.stays_unfolded_from(from, surfaces);
+        rayon::join(|| elements::check_motion(complex, from.nodes(), to.nodes()), || to.crossings_from(from, surfaces));
+    let proven = unfolded && found.iter().all(|(_, proven)| *proven) && to.stays_unfolded_from(from, surfaces);
     let crossings = BySurface { skin: found.skin.0, written: found.written.map(|(crossings, _)| crossings) };
     let certificate = conclude(complex, surfaces, to.nodes(), elements, &crossings);
-    let clear = clear && certificate.certified();
-    (certificate, clear)
+    let proven = proven && certificate.certified();
+    (certificate, proven)
 }
 
 /// What the findings on a state come to.
@@ -288,7 +288,7 @@ pub(crate) fn enclosed_solids(complex: &Complex, positions: &[Vec3A]) -> Vec<u32
 fn winding<'a>(dimension: Dimension, faces: impl Iterator<Item = &'a [u32; 3]>, positions: &[Vec3A], p: DVec3) -> f64 {
     let corners = |face: &[u32; 3]| face.map(|v| positions[v as usize].as_dvec3());
     match dimension {
-        // Lines that cross the ray to the right, by the way they go; exact.
+        // Lines that cross the ray to the right, by the direction they go in; exact.
         Dimension::Two => {
             let crossing = |face: &[u32; 3]| {
                 let [a, b, _] = corners(face);

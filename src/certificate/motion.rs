@@ -12,7 +12,7 @@
 //! test alone, not those of finding the direction. S is the sum of its components' sizes.
 //!
 //! # Cuts
-//! A motion is cut at its middle, `m = fl(fl(x₀ + x₁) / 2)`, and its halves in turn, at most [`HALVINGS`] = 10 times. A middle that is
+//! A motion is cut at its middle, `m = fl(fl(x₀ + x₁) / 2)`, and its halves in turn, at most [`SUBDIVISION_DEPTH`] = 10 times. A middle that is
 //! rounded is not on the line; the two halves then are not halves of the motion that is meant. It must be known how far off they are.
 //!
 //! **Lemma.** Let x₀ and x₁ be numbers of single precision. A coordinate that is computed at `τ = i / 1024` by cutting is `x(τ)(1 + θ)`
@@ -44,7 +44,7 @@
 //!
 //! # Practice
 //! Directions that are cheap to find come first. Triangles that keep any distance are proven to do so in the end; what is
-//! left comes nearer than a part in 2^[`HALVINGS`] of the motion.
+//! left comes nearer than a part in 2^[`SUBDIVISION_DEPTH`] of the motion.
 
 use std::ops::{Add, Mul};
 
@@ -53,12 +53,12 @@ use glam::{DVec3, Vec3A};
 use super::star::{Normals, Rounding, SINGLE_ROUNDING, is_in_range};
 
 /// Halvings of a motion at most.
-pub(super) const HALVINGS: u32 = 10;
+pub(super) const SUBDIVISION_DEPTH: u32 = 10;
 
 /// A triangle's corners at both ends of a motion.
 pub(super) type Moving = [[DVec3; 3]; 2];
 
-/// Whether two moving triangles without a common corner are proven apart all the way along the line between their middles,
+/// Whether two moving triangles without a common corner are proven apart at every instant along the line between their middles,
 /// in f32: serves for most. Never wrongly true.
 #[inline]
 pub(super) fn lie_apart(s: [[Vec3A; 3]; 2], t: [[Vec3A; 3]; 2]) -> bool {
@@ -81,21 +81,14 @@ pub(super) fn lie_apart_with(rounding: f32, s: [[Vec3A; 3]; 2], t: [[Vec3A; 3]; 
     is_in_range(bound) && gap(0) > bound && gap(1) > bound
 }
 
-/// Whether two moving triangles are proven to have nothing in common but the corners they share, all the way. Never
-/// wrongly true. Ids are equal where corners are the same point. A state is a motion without halvings.
-pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 3], t_ids: [u32; 3], halvings: u32) -> bool {
-    stay_apart_with(Rounding::PROVEN, s, t, s_ids, t_ids, halvings)
+/// Whether two moving triangles are proven to have nothing in common but the corners they share, at every instant. Never
+/// wrongly true. Ids are equal where corners are the same point. A state is a motion whose two ends are the same, and needs no subdivision.
+pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 3], t_ids: [u32; 3], depth: u32) -> bool {
+    stay_apart_with(Rounding::PROVEN, s, t, s_ids, t_ids, depth)
 }
 
 /// As [`stay_apart`], with rounding bounds.
-fn stay_apart_with(
-    rounding: Rounding,
-    s: &Moving,
-    t: &Moving,
-    s_ids: [u32; 3],
-    t_ids: [u32; 3],
-    halvings: u32,
-) -> bool {
+fn stay_apart_with(rounding: Rounding, s: &Moving, t: &Moving, s_ids: [u32; 3], t_ids: [u32; 3], depth: u32) -> bool {
     let (mut shared, mut count) = ([(0, 0); 3], 0);
     for (i, id) in s_ids.iter().enumerate() {
         if let Some(j) = t_ids.iter().position(|other| other == id) {
@@ -104,12 +97,12 @@ fn stay_apart_with(
         }
     }
     match shared[..count] {
-        [] => halved(s, t, halvings, &|s, t| are_apart(rounding, s, t)),
-        [at] => halved(s, t, halvings, &|s, t| are_apart_around(rounding, s, t, at)),
+        [] => subdivided(s, t, depth, &|s, t| are_apart(rounding, s, t)),
+        [at] => subdivided(s, t, depth, &|s, t| are_apart_around(rounding, s, t, at)),
         [(i, j), (k, l)] => {
             // Seen along some direction, both turn the same way around their common edge: they lie on its two sides.
             let opposite = ((k + 3 - i) % 3 == 1) != ((l + 3 - j) % 3 == 1);
-            halved(s, t, halvings, &|s, t| are_apart_across(rounding, s, t, opposite))
+            subdivided(s, t, depth, &|s, t| are_apart_across(rounding, s, t, opposite))
         }
         _ => false,
     }
@@ -125,7 +118,7 @@ pub(super) fn are_apart(rounding: Rounding, s: &Moving, t: &Moving) -> bool {
     }
     // Side by side in one plane.
     [m, n].iter().any(|p| (0..3).any(|k| is_between(of_m.cross(p[(k + 1) % 3] - p[k]))))
-        || is_between(way_between(&m, &n))
+        || is_between(offset_between(&m, &n))
 }
 
 /// Whether a fixed plane through a common corner, the i-th of one and the j-th of the other, has the rest of two triangles
@@ -157,10 +150,10 @@ pub(super) fn are_apart_across(rounding: Rounding, s: &Moving, t: &Moving, oppos
 pub(super) type Corners<V, const N: usize> = [[V; N]; 2];
 
 /// Whether a proof comes out for a motion of two, or for its halves, theirs and so on.
-pub(super) fn halved<V, const N: usize>(
+pub(super) fn subdivided<V, const N: usize>(
     s: &Corners<V, N>,
     t: &Corners<V, N>,
-    halvings: u32,
+    depth: u32,
     proof: &impl Fn(&Corners<V, N>, &Corners<V, N>) -> bool,
 ) -> bool
 where
@@ -169,11 +162,11 @@ where
     if proof(s, t) {
         return true;
     }
-    if halvings == 0 {
+    if depth == 0 {
         return false;
     }
     let (m, n) = (middle(s), middle(t));
-    halved(&[s[0], m], &[t[0], n], halvings - 1, proof) && halved(&[m, s[1]], &[n, t[1]], halvings - 1, proof)
+    subdivided(&[s[0], m], &[t[0], n], depth - 1, proof) && subdivided(&[m, s[1]], &[n, t[1]], depth - 1, proof)
 }
 
 pub(super) fn middle<V, const N: usize>(p: &Corners<V, N>) -> [V; N]
@@ -197,9 +190,9 @@ fn normal(p: &[DVec3; 3]) -> DVec3 {
 }
 
 /// From the nearest point of one triangle to the nearest of another, where they are apart.
-fn way_between(s: &[DVec3; 3], t: &[DVec3; 3]) -> DVec3 {
+fn offset_between(s: &[DVec3; 3], t: &[DVec3; 3]) -> DVec3 {
     let edges = |p: &[DVec3; 3]| [0, 1, 2].map(|k| [p[k], p[(k + 1) % 3]]);
-    let between_edges = edges(s).into_iter().flat_map(|e| edges(t).map(|f| way_between_segments(e, f)));
+    let between_edges = edges(s).into_iter().flat_map(|e| edges(t).map(|f| offset_between_segments(e, f)));
     let from_s = t.iter().filter_map(|&p| foot(p, s).map(|foot| p - foot));
     let to_t = s.iter().filter_map(|&p| foot(p, t).map(|foot| foot - p));
     shortest(between_edges.chain(from_s).chain(to_t))
@@ -209,12 +202,12 @@ fn way_between(s: &[DVec3; 3], t: &[DVec3; 3]) -> DVec3 {
 fn nearest_to_origin(p: [DVec3; 4]) -> DVec3 {
     let edges = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
     let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
-    let on_edges = edges.map(|[a, b]| way_between_segments([DVec3::ZERO; 2], [p[a], p[b]]));
+    let on_edges = edges.map(|[a, b]| offset_between_segments([DVec3::ZERO; 2], [p[a], p[b]]));
     shortest(on_edges.into_iter().chain(faces.into_iter().filter_map(|face| foot(DVec3::ZERO, &face.map(|k| p[k])))))
 }
 
-fn shortest(ways: impl IntoIterator<Item = DVec3>) -> DVec3 {
-    ways.into_iter().min_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or_default()
+fn shortest(offsets: impl IntoIterator<Item = DVec3>) -> DVec3 {
+    offsets.into_iter().min_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or_default()
 }
 
 /// The foot of the perpendicular from a point onto a triangle, if it lies in it.
@@ -228,7 +221,7 @@ fn foot(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
 }
 
 /// From the nearest point of one segment to the nearest of another (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
-fn way_between_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
+fn offset_between_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
     let (u, v, w) = (b - a, d - c, a - c);
     let part = |x: f64, of: f64| if of > 0.0 { (x / of).clamp(0.0, 1.0) } else { 0.0 };
     let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
@@ -299,7 +292,7 @@ mod tests {
                 (false, _) => end(points[3 + k], 9 + k),
             }));
             let ids = [[0, 1, 2], std::array::from_fn(|k| if k < shared { 2 - k as u32 } else { 3 + k as u32 })];
-            if stay_apart(&s, &t, ids[0], ids[1], HALVINGS) {
+            if stay_apart(&s, &t, ids[0], ids[1], SUBDIVISION_DEPTH) {
                 prop_assert!(!cross_at_times(&s, &t, ids), "{s:?} {t:?} {ids:?}");
             }
             if shared == 0 && lie_apart(single(&s), single(&t)) {
@@ -320,7 +313,7 @@ mod tests {
                 (false, _) => end(points[3 + k], 3 + k),
             }));
             let ids = [[0, 1, 2], std::array::from_fn(|k| if k < shared { 2 - k as u32 } else { 3 + k as u32 })];
-            if !stay_apart(&s, &t, ids[0], ids[1], HALVINGS) {
+            if !stay_apart(&s, &t, ids[0], ids[1], SUBDIVISION_DEPTH) {
                 // Of triangles with a common corner it is the angle between them that vanishes.
                 let nearest = (0..=1024).map(|k| {
                     let part = f64::from(k) / 1024.0;
@@ -329,7 +322,7 @@ mod tests {
                         return 0.0;
                     }
                     if shared == 0 {
-                        return way_between(&m, &n).length();
+                        return offset_between(&m, &n).length();
                     }
                     let ([a, b], [c, d]) = (ahead(&m, 2), ahead(&n, 0));
                     nearest_to_origin([-a, -b, c, d]).length()
@@ -352,22 +345,22 @@ mod tests {
         let drift = DVec3::new(30.0, 20.0, 10.0);
         let s = [moved(DVec3::ZERO), moved(drift)];
         let t = [moved(-DVec3::Z), moved(drift + DVec3::new(9.0, 0.0, -0.5))];
-        assert!(stay_apart(&s, &t, [0, 1, 2], [3, 4, 5], HALVINGS));
+        assert!(stay_apart(&s, &t, [0, 1, 2], [3, 4, 5], SUBDIVISION_DEPTH));
         let above = [moved(DVec3::Z), moved(drift + DVec3::Z)];
         assert!(lie_apart(single(&s), single(&above)) && lie_apart(single(&above), single(&s)));
         let hinge = |tip: [f64; 3]| [DVec3::from(FLOOR[1]), DVec3::from(FLOOR[0]), DVec3::from(tip)];
         let opening = [hinge([1.0, 0.1, 1.0]), hinge([1.0, -2.0, -1.0])];
-        assert!(stay_apart(&[s[0]; 2], &opening, [0, 1, 2], [1, 0, 3], HALVINGS));
+        assert!(stay_apart(&[s[0]; 2], &opening, [0, 1, 2], [1, 0, 3], SUBDIVISION_DEPTH));
     }
 
     #[test]
     fn sabotage_triangles_that_pass_through_each_other_are_not() {
         let s = [moved(DVec3::ZERO); 2];
         let t = [moved(DVec3::Z), moved(-DVec3::Z)];
-        assert!(!stay_apart(&s, &t, [0, 1, 2], [3, 4, 5], HALVINGS));
+        assert!(!stay_apart(&s, &t, [0, 1, 2], [3, 4, 5], SUBDIVISION_DEPTH));
         assert!(!lie_apart(single(&s), single(&t)));
         let hinge = |tip: [f64; 3]| [DVec3::from(FLOOR[1]), DVec3::from(FLOOR[0]), DVec3::from(tip)];
         let through = [hinge([1.0, 2.0, 1.0]), hinge([1.0, 2.0, -1.0])];
-        assert!(!stay_apart(&s, &through, [0, 1, 2], [1, 0, 3], HALVINGS));
+        assert!(!stay_apart(&s, &through, [0, 1, 2], [1, 0, 3], SUBDIVISION_DEPTH));
     }
 }

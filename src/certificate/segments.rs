@@ -7,7 +7,7 @@
 //! along each other: their cross product keeps its sign, or their dot product stays negative.
 //!
 //! Where none of this holds for the whole motion, its halves are looked at. Segments that keep any distance are proven so
-//! in the end; what is left comes nearer than a part in 2^[`HALVINGS`] of the motion.
+//! in the end; what is left comes nearer than a part in 2^[`SUBDIVISION_DEPTH`] of the motion.
 //!
 //! # Rounding
 //! Double precision. A product of two differences u, v of sizes at most L and L': 2 differences, the product, a sum, and the mean of two:
@@ -19,14 +19,14 @@
 use glam::DVec2;
 
 use super::{
-    motion::{HALVINGS, halved},
+    motion::{SUBDIVISION_DEPTH, subdivided},
     star::Rounding,
 };
 
-/// A segment's ends at both ends of a motion. A state is a motion that leads nowhere.
+/// A segment's ends at both ends of a motion. A state is a motion whose two ends are the same.
 pub(super) type Moving = [[DVec2; 2]; 2];
 
-/// Whether two moving segments are proven to have nothing in common but the end they share, all the way. Never wrongly
+/// Whether two moving segments are proven to have nothing in common but the end they share, at every instant. Never wrongly
 /// true. Ids are equal where ends are the same point.
 pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 2], t_ids: [u32; 2]) -> bool {
     stay_apart_with(Rounding::PROVEN, s, t, s_ids, t_ids)
@@ -43,8 +43,8 @@ fn stay_apart_with(rounding: Rounding, s: &Moving, t: &Moving, s_ids: [u32; 2], 
     }
     let (i, j) = shared;
     match count {
-        0 => halved(s, t, HALVINGS, &|s, t| are_apart(rounding, s, t)),
-        1 => halved(s, t, HALVINGS, &|s, t| are_apart_around(rounding, s, t, (i, j))),
+        0 => subdivided(s, t, SUBDIVISION_DEPTH, &|s, t| are_apart(rounding, s, t)),
+        1 => subdivided(s, t, SUBDIVISION_DEPTH, &|s, t| are_apart_around(rounding, s, t, (i, j))),
         _ => false,
     }
 }

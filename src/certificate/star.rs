@@ -89,7 +89,7 @@ impl Stars {
         Self { start, corners }
     }
 
-    /// `[identities]` stars whose triangles are proven not to cross each other, at one state or all the way between two.
+    /// `[identities]` stars whose triangles are proven not to cross each other, in one state or at every instant between two.
     pub fn proven<const ENDS: usize>(&self, triangles: &[[u32; 3]], ends: [&[Vec3A]; ENDS]) -> Vec<bool> {
         self.proven_with(SINGLE_ROUNDING, triangles, ends)
     }
@@ -162,7 +162,7 @@ impl Normals {
         Self { coefficients, error }
     }
 
-    /// Whether the triangle is positively oriented along a direction all the way; never wrongly true.
+    /// Whether the triangle is positively oriented along a direction at every instant; never wrongly true.
     #[inline]
     pub fn are_along(&self, direction: DVec3) -> bool {
         let bound = self.error * direction.abs().element_sum();
@@ -195,7 +195,7 @@ impl Facing {
         self.coefficients[0] + self.coefficients[1] + self.coefficients[2]
     }
 
-    /// Whether the triangle is positively oriented along a unit vector all the way; never wrongly true. Where products
+    /// Whether the triangle is positively oriented along a unit vector at every instant; never wrongly true. Where products
     /// leave the range of f32, it is not proven.
     #[inline]
     pub fn is_along(&self, rounding: f32, direction: Vec3A) -> bool {

@@ -1,4 +1,4 @@
-//! A tree of boxes over a set of primitives (triangles, or couples of them), ordered once by rest positions and fitted to every state or motion.
+//! A tree of boxes over a set of primitives (triangles, or pairs of them), ordered once by rest positions and fitted to every state or motion.
 //!
 //! Warping keeps neighbours together, so the rest order stays good; fitting is one pass over the boxes.
 
@@ -59,11 +59,11 @@ impl Bounds {
 /// The boxes of one primitive at the ends of a motion (one end: a state).
 ///
 /// Where corners move along straight lines, two primitives whose boxes are apart along an axis at both ends, in the same
-/// order, are apart along it all the way: this says more than the boxes that hold whole motions, and moving together
+/// order, are apart along it at every instant: this says more than the boxes that hold whole motions, and moving together
 /// brings nothing near.
 pub(super) type Boxes<const ENDS: usize> = [Bounds; ENDS];
 
-/// False only where an axis keeps two primitives apart all the way.
+/// False only where an axis keeps two primitives apart at every instant.
 #[inline]
 pub(super) fn may_meet<const ENDS: usize>(a: &Boxes<ENDS>, b: &Boxes<ENDS>) -> bool {
     let (mut below, mut above) = (BVec3A::TRUE, BVec3A::TRUE);
@@ -165,7 +165,7 @@ impl Tree {
 
     /// Hands all pairs of primitives whose boxes meet to `take`, each once, which adds what it makes of them to its list;
     /// returns the lists, in an order that does not depend on threads. `bounds` gives the boxes of a primitive at each end
-    /// of a motion: pairs are left out that an axis keeps apart all the way.
+    /// of a motion: pairs are left out that an axis keeps apart at every instant.
     pub fn pairs<const ENDS: usize>(
         &self,
         bounds: impl Fn(u32) -> [Bounds; ENDS] + Sync,

@@ -4,7 +4,7 @@
 
 use glam::{IVec3, Vec3A};
 use homunculus::{
-    certificate::{Placed, Surface, Surfaces, certify, certify_way, orientation},
+    certificate::{CarriedState, Surface, Surfaces, certify, certify_motion, orientation},
     voxel::{Complex, KUHN},
 };
 
@@ -47,8 +47,8 @@ fn a_cell_drawn_out_to_a_line() {
     let half: Vec<Vec3A> = from.iter().zip(&to).map(|(a, b)| 0.5 * (*a + *b)).collect();
     assert!(inverted(&complex, &half) > 0 && inverted(&complex, &to) == 0);
     let surfaces = Surfaces::skin_of(&complex);
-    let [from, to] = [from, to].map(|nodes| Placed::new(&surfaces, nodes));
-    assert!(!certify_way(&complex, &surfaces, &from, &to).1);
+    let [from, to] = [from, to].map(|nodes| CarriedState::new(&surfaces, nodes));
+    assert!(!certify_motion(&complex, &surfaces, &from, &to).1);
 }
 
 /// Two triangles that cross, of 10¹⁹ cells, were proven to lie apart: their gap was infinite.
@@ -85,7 +85,7 @@ fn segments_that_come_from_afar() {
         let from = points.map(|[x, y]| at(x * (-60.0_f32).exp2(), y * (-40.0_f32).exp2())).to_vec();
         let to = points.map(|[_, y]| at(997.0 + k, y * (-40.0_f32).exp2())).to_vec();
         let surface = Surface::flat(vec![[0, 1, 1], [2, 3, 3]], &from);
-        wrong += usize::from(surface.doubtful_pairs(&from, &to).is_empty());
+        wrong += usize::from(surface.unproven_pairs(&from, &to).is_empty());
     }
     assert_eq!(wrong, 0);
 }

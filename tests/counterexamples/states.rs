@@ -2,7 +2,7 @@
 
 use glam::{IVec3, Vec3A};
 use homunculus::{
-    certificate::{Certificate, Placed, Surfaces, certify, certify_way},
+    certificate::{CarriedState, Certificate, Surfaces, certify, certify_motion},
     collision::{Problem, grow, guard_step},
     voxel::{Complex, blend},
 };
@@ -12,8 +12,8 @@ use super::complex;
 /// The certificate of a state, and whether the motion to it is proven.
 fn motion(complex: &Complex, from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
     let surfaces = Surfaces::skin_of(complex);
-    let [from, to] = [from, to].map(|nodes| Placed::new(&surfaces, nodes.to_vec()));
-    certify_way(complex, &surfaces, &from, &to)
+    let [from, to] = [from, to].map(|nodes| CarriedState::new(&surfaces, nodes.to_vec()));
+    certify_motion(complex, &surfaces, &from, &to)
 }
 
 /// Two cells two apart, and where the second goes so that its edge is beside the other's from `enters` of the motion on and
