@@ -1,9 +1,9 @@
 //! Attacks on the bounds of rounding: input that is degenerate, or nearly, with exponents of all kinds, judged by exact
 //! arithmetic. Each attack has its sabotage: with a bound too small, the same input gets a wrong proof through.
 //!
-//! Two sorts of input are enough. *Touching* input is degenerate by construction, so that every proof of it is wrong: what
-//! is computed of it is rounding and nothing else. *Crushed* input is nearly degenerate to one side or the other, which
-//! [`exact`](super::exact) arithmetic tells.
+//! Two sorts of input are enough. *Touching* input is degenerate by construction, so that every proof of it is wrong:
+//! what is computed of it is rounding and nothing else. *Crushed* input is nearly degenerate to one side or the other,
+//! which [`exact`](super::exact) arithmetic tells.
 
 use std::ops::{Add, Mul};
 
@@ -273,8 +273,8 @@ fn sabotage_without_a_bound_triangles_that_touch_lie_apart() {
     assert!(in_single > 0 && in_double > 0, "{in_single} {in_double}");
 }
 
-/// Triangles so far apart that products leave the range of single precision, and cross all the same: until this was a test,
-/// an infinite gap was a proof.
+/// Triangles so far apart that products leave the range of single precision, and cross all the same: until this was a
+/// test, an infinite gap was a proof.
 #[test]
 fn what_is_beyond_the_range_of_single_precision_is_not_proven() {
     let wrong = count(20_000, |random| {
@@ -286,9 +286,9 @@ fn what_is_beyond_the_range_of_single_precision_is_not_proven() {
     assert_eq!(wrong, 0);
 }
 
-/// Two triangles with a common corner, an edge of one within the other at every instant. They stand still; `mixed`: they
-/// move far from near the origin, all corners to one and the same x, so that no instant between is a number of double
-/// precision.
+/// Two triangles with a common corner, an edge of one within the other at every instant. They stand still; `mixed`:
+/// they move far from near the origin, all corners to one and the same x, so that no instant between is a number of
+/// double precision.
 fn grown_into_each_other(random: &mut Random, mixed: bool) -> [Moving; 2] {
     let (c, u, v) = (random.whole_vector(), 2.0 * random.whole_vector(), 2.0 * random.whole_vector());
     let pair = [[c, c + u, c + v], [c, c + 0.5 * (u + v), c + random.whole_vector()]];
@@ -329,8 +329,8 @@ where
         && (anywhere(&[[s[0], m], [t[0], n]], depth - 1, proof) || anywhere(&[[m, s[1]], [n, t[1]]], depth - 1, proof))
 }
 
-/// How many pairs of triangles that share a corner, or an edge, and cross at every instant, are proven not to in some part
-/// of their motion.
+/// How many pairs of triangles that share a corner, or an edge, and cross at every instant, are proven not to in some
+/// part of their motion.
 fn crossing_but_proven(rounding: Rounding, mixed: bool) -> [usize; 2] {
     let around = count(2000, |random| {
         let pair = grown_into_each_other(random, mixed);
@@ -362,8 +362,8 @@ fn sabotage_where_cuts_are_taken_for_exact_they_are() {
     assert!(around + across > 0, "{around} {across}");
 }
 
-/// How many moving triangles that are seen edge-on at every instant, along a direction in them, are said to face it in some
-/// part of their motion; `mixed` as above.
+/// How many moving triangles that are seen edge-on at every instant, along a direction in them, are said to face it in
+/// some part of their motion; `mixed` as above.
 fn edge_on_but_facing_in_double(rounding: Rounding, mixed: bool) -> usize {
     count(4000, |random| {
         let (a, u, v) = (random.whole_vector(), random.whole_vector(), random.whole_vector());
@@ -394,8 +394,8 @@ fn sabotage_without_one_of_the_bounds_it_does() {
     assert!(edge_on_but_facing_in_double(Rounding { midpoint: 0.0, ..Rounding::PROVEN }, true) > 0);
 }
 
-/// How many segments of the plane that run along each other, with a common end or without, are proven apart in some part of
-/// their motion; `mixed` as above.
+/// How many segments of the plane that run along each other, with a common end or without, are proven apart in some
+/// part of their motion; `mixed` as above.
 fn touching_segments_but_proven(rounding: Rounding, mixed: bool) -> [usize; 2] {
     let of = |random: &mut Random, shared: bool| {
         let along = random.pick(&LINES);
@@ -439,8 +439,8 @@ fn sabotage_without_a_bound_segments_that_touch_are() {
     assert!(apart > 0 && around > 0, "{apart} {around}");
 }
 
-/// Largest error of the places that a motion is cut at, relative to them, of all motions between numbers of single precision
-/// that are tried.
+/// Largest error of the places that a motion is cut at, relative to them, of all motions between numbers of single
+/// precision that are tried.
 fn misplaced() -> f64 {
     let mut worst = 0.0_f64;
     for seed in 0..20_000 {

@@ -1,43 +1,52 @@
 //! Elements: whether all are positively oriented, in a state or at every instant between two.
 //!
 //! # Theory
-//! *A state.* An element is positive if `det[b − a, c − a, d − a] > 0`. In single precision, with M the largest component of the
-//! differences: each of the 6 products in the determinant goes through 3 differences, the product and the difference of the cross
-//! product, and the product and two sums of the dot product: n = 8, Σ |terms| ≤ 6 M³, error ≤ 48 u M³ = 2.9e-6 M³. [`ROUNDING`] is
-//! 1e-5. What is not above it, or beyond the range of single precision, is left to the exact predicate.
+//! *A state.* An element is positive if `det[b − a, c − a, d − a] > 0`. In single precision, with M the largest
+//! component of the differences: each of the 6 products in the determinant goes through 3 differences, the product and
+//! the difference of the cross product, and the product and two sums of the dot product: n = 8, Σ |terms| ≤ 6 M³, error
+//! ≤ 48 u M³ = 2.9e-6 M³. [`ROUNDING`] is 1e-5. What is not above it, or beyond the range of single precision, is left
+//! to the exact predicate.
 //!
-//! *A motion, by the volume.* Differences of corners are linear in τ, so the volume is a cubic polynomial. With edges a, b, c at the
-//! start and a', b', c' at the end, its Bernstein coefficients are `[a b c]`, `([a' b c] + [a b' c] + [a b c']) / 3`,
-//! `([a' b' c] + [a' b c'] + [a b' c']) / 3`, `[a' b' c']`. A polynomial is nowhere less than the least of its coefficients; where one
-//! is not positive, it is cut into halves (de Casteljau), of which each has coefficients of its own, nearer to the values.
-//! In double precision: n = 8 for each determinant, 2 more for the sum of three and 1 for the division, Σ |terms| ≤ 18 M³ / 3 = 6 M³:
-//! error ≤ 66 u M³. Cutting takes means of neighbours. A mean makes no error larger and adds one rounding of at most 6 u M³; a cubic
-//! takes three means in a row for a half, and a motion is subdivided ten times: 180 u M³ more. In all 246 u M³ = 2.8e-14 M³, against 1e-13
-//! ([`star::ROUNDING`]). In the plane: n = 5 for the mean of two products of differences, Σ |terms| ≤ 2 M², and 20 means of 2 u M²: 50 u M² =
-//! 5.6e-15 M².
+//! *A motion, by the volume.* Differences of corners are linear in τ, so the volume is a cubic polynomial. With edges
+//! a, b, c at the start and a', b', c' at the end, its Bernstein coefficients are
 //!
-//! *A motion, by all of a cell at once.* An element's edges along the axes are the columns of its deformation gradient F. If
-//! ‖B F − I‖ < 1 for some matrix B, then B F is not singular, nor are B and F, and none is between it and I: det B and det F have one sign. The
-//! set of such F is convex, and F moves along a straight line, so that both ends tell for every instant. If all elements of a
-//! cell satisfy it with one B, one of them tells the sign for all. Columns are taken one by one, the worst of four edges of a cell and two
-//! ends for each, which covers all elements. Norms are Frobenius norms.
+//!     [a b c],  ([a' b c] + [a b' c] + [a b c']) / 3,  ([a' b' c] + [a' b c'] + [a b' c']) / 3,  [a' b' c'].
+//!
+//! A polynomial is nowhere less than the least of
+//! its coefficients; where one is not positive, it is cut into halves (de Casteljau), of which each has coefficients of
+//! its own, nearer to the values. In double precision: n = 8 for each determinant, 2 more for the sum of three and 1
+//! for the division, Σ |terms| ≤ 18 M³ / 3 = 6 M³: error ≤ 66 u M³. Cutting takes means of neighbours. A mean makes no
+//! error larger and adds one rounding of at most 6 u M³; a cubic takes three means in a row for a half, and a motion is
+//! subdivided ten times: 180 u M³ more. In all 246 u M³ = 2.8e-14 M³, against 1e-13 ([`star::ROUNDING`]). In the plane:
+//! n = 5 for the mean of two products of differences, Σ |terms| ≤ 2 M², and 20 means of 2 u M²: 50 u M² = 5.6e-15 M².
+//!
+//! *A motion, by all of a cell at once.* An element's edges along the axes are the columns of its deformation gradient
+//! F. If ‖B F − I‖ < 1 for some matrix B, then B F is not singular, nor are B and F, and none is between it and I: det
+//! B and det F have one sign. The set of such F is convex, and F moves along a straight line, so that both ends tell
+//! for every instant. If all elements of a cell satisfy it with one B, one of them tells the sign for all. Columns are
+//! taken one by one, the worst of four edges of a cell and two ends for each, which covers all elements. Norms are
+//! Frobenius norms.
 //!
 //! Let B be the inverse, as computed, of the mean M of the F, and m its longest column. First,
-//! `‖B F − I‖ ≤ ‖B‖ ‖F − M‖ + ‖B M − I‖`. The second term is rounding, but it may be large: with columns a, b, c
+//!
+//!     ‖B F − I‖ ≤ ‖B‖ ‖F − M‖ + ‖B M − I‖.
+//!
+//! The second term is rounding, but it may be large: with columns a, b, c
 //!
 //! - a cross product is off by at most √2 γ₂ |b| |c|, the three of them, times ‖M‖ ≤ √3 m, by √18 · 2 u m³ = 8.5 u m³;
 //! - the determinant is off by at most γ₅ times its permanent, ≤ √2 · 5 u m³ = 7.1 u m³;
 //! - dividing and multiplying adds 2 u ‖B‖ ‖M‖.
 //!
-//! So `‖B M − I‖ ≤ 15.6 u m³ / det M`, and the last, which is at most 4e-4 where [`WELL_CONDITIONED`] holds. [`MOST_SKEWED`] bounds m³ / det M as
-//! computed by 5e4; then the true determinant is at most 2.2 % less, and the term is below 0.048. The first term is below √0.8 = 0.895
-//! ([`FAR_FROM_SINGULAR`]); the edges F are rounded by u |e| and so is their difference from the mean, which adds ‖B‖ √3 · 2 u |e| ≤
-//! 2.1e-4. In all 0.944 < 1. (For three edges that are nearly one, the determinant is nothing but rounding, and B is no inverse of anything:
-//! without the bound on m³ / det M such cells were wrongly proven.)
+//! So `‖B M − I‖ ≤ 15.6 u m³ / det M`, and the last, which is at most 4e-4 where [`WELL_CONDITIONED`] holds.
+//! [`MOST_SKEWED`] bounds m³ / det M as computed by 5e4; then the true determinant is at most 2.2 % less, and the term
+//! is below 0.048. The first term is below √0.8 = 0.895 ([`FAR_FROM_SINGULAR`]); the edges F are rounded by u |e| and
+//! so is their difference from the mean, which adds ‖B‖ √3 · 2 u |e| ≤ 2.1e-4. In all 0.944 < 1. (For three edges that
+//! are nearly one, the determinant is nothing but rounding, and B is no inverse of anything: without the bound on m³ /
+//! det M such cells were wrongly proven.)
 //!
-//! Second, where that fails, B e − I is computed for each edge e itself. Then it does not matter what B is. Each component goes through
-//! the edge's own rounding, a product, two sums and the last difference, n = 5: a column is off by at most 5 u ‖B‖ |e| + u ≤ 3.0e-4 under [`WELL_CONDITIONED`],
-//! all three by 5.2e-4, and 0.895 + 0.0006 < 1.
+//! Second, where that fails, B e − I is computed for each edge e itself. Then it does not matter what B is. Each
+//! component goes through the edge's own rounding, a product, two sums and the last difference, n = 5: a column is off
+//! by at most 5 u ‖B‖ |e| + u ≤ 3.0e-4 under [`WELL_CONDITIONED`], all three by 5.2e-4, and 0.895 + 0.0006 < 1.
 
 use glam::{DVec3, Mat3A, Vec3A};
 use rayon::prelude::*;
@@ -89,7 +98,8 @@ pub(super) fn inverted_cells(complex: &Complex, positions: &[Vec3A]) -> Vec<usiz
         .collect()
 }
 
-/// Checks all elements of the state `to`, and whether they are proven to be positive at every instant of the motion there.
+/// Checks all elements of the state `to`, and whether they are proven to be positive at every instant of the motion
+/// there.
 pub(super) fn check_motion(complex: &Complex, from: &[Vec3A], to: &[Vec3A]) -> (Check, bool) {
     let check_cell = checker(complex.dimension);
     let stays_positive = cell_stays_positive(complex.dimension);
@@ -132,7 +142,8 @@ fn check_flat_cell(cell: usize, corners: &[u32; 8], positions: &[Vec3A]) -> Chec
     check
 }
 
-/// Whether both elements of a flat cell are proven to be positive at every instant of a straight motion. Never wrongly true.
+/// Whether both elements of a flat cell are proven to be positive at every instant of a straight motion. Never wrongly
+/// true.
 fn flat_cell_stays_positive(ends: [[Vec3A; 8]; 2]) -> bool {
     Dimension::Two.elements().iter().all(|&[a, b, c, _]| flat_stays_positive(ends.map(|at| [at[a], at[b], at[c]])))
 }
@@ -156,8 +167,8 @@ pub(super) fn flat_stays_positive_with(rounding: f64, ends: [[Vec3A; 3]; 2]) -> 
     stays_above(rounding * largest * largest, coefficients, SUBDIVISION_DEPTH)
 }
 
-/// Bounds the rounding of an element's volume in f32, relative to the cube of its cell's largest component: 48 roundings of
-/// 2⁻²⁴, 2.9e-6, and room. Also of an area, relative to the square: 8 roundings.
+/// Bounds the rounding of an element's volume in f32, relative to the cube of its cell's largest component: 48
+/// roundings of 2⁻²⁴, 2.9e-6, and room. Also of an area, relative to the square: 8 roundings.
 pub(crate) const ROUNDING: f32 = 1.0e-5;
 
 #[inline]
@@ -211,8 +222,8 @@ const WELL_CONDITIONED: f32 = 1.0e6;
 /// Below this the determinant of a cell's mean edges, in cells, says nothing in single precision.
 const LEAST_DETERMINANT: f32 = 1.0e-6;
 
-/// m³ / det M up to which the inverse of a cell's mean edges M, none longer than m, is trusted to be one: it is off by 0.048
-/// then. Twice as much would leave nothing of the tenth.
+/// m³ / det M up to which the inverse of a cell's mean edges M, none longer than m, is trusted to be one: it is off by
+/// 0.048 then. Twice as much would leave nothing of the tenth.
 pub(super) const MOST_SKEWED: f32 = 5.0e4;
 
 /// Whether all elements of a cell are proven to be positive at every instant: see the page. Never wrongly true.
@@ -275,8 +286,8 @@ fn bernstein(rounding: f64, [from, to]: [[Vec3A; 8]; 2]) -> bool {
     KUHN.into_iter().all(|element| element_stays_positive(rounding, element, [&from, &to]))
 }
 
-/// Whether one element of a cell is proven to be positive at every instant: its volume is cubic in time, and positive where its
-/// Bernstein coefficients are.
+/// Whether one element of a cell is proven to be positive at every instant: its volume is cubic in time, and positive
+/// where its Bernstein coefficients are.
 pub(super) fn element_stays_positive(rounding: f64, element: [usize; 4], [from, to]: [&[Vec3A; 8]; 2]) -> bool {
     let edges = |at: &[Vec3A; 8]| {
         let [a, b, c, d] = element.map(|k| at[k].as_dvec3());

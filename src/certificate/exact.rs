@@ -1,8 +1,8 @@
 //! Exact arithmetic for tests: whole numbers of 1536 bits, slow and without any rounding.
 //!
-//! A coordinate in single precision is a whole multiple of 2⁻¹⁴⁹, and below 2¹²⁸: times 2¹⁴⁹ it has at most 277 bits. At an
-//! instant of a motion that is a whole number of 1024ths it has ten more. A determinant of three differences then has less
-//! than 900 bits. Nothing here can overflow.
+//! A coordinate in single precision is a whole multiple of 2⁻¹⁴⁹, and below 2¹²⁸: times 2¹⁴⁹ it has at most 277 bits.
+//! At an instant of a motion that is a whole number of 1024ths it has ten more. A determinant of three differences then
+//! has less than 900 bits. Nothing here can overflow.
 
 use std::ops::{Add, Mul, Sub};
 

@@ -3,48 +3,54 @@
 //! # Theory
 //! A direction along which one lies before the other at both ends has it before the other at every instant, since the
 //! difference of two corners along a fixed direction is linear in time. Where no direction serves for the whole motion,
-//! its two halves are looked at. At a single instant there always is one for triangles that are apart: from the nearest point
-//! of one to the nearest of the other; for triangles with a common corner, whose other corners are looked at as directions
-//! from there, the point nearest to the origin of all that lies between these (those of one of them turned around).
-//! Triangles with a common edge are seen along one direction, where their normals, quadratic in time, must point to it (page `star`).
+//! its two halves are looked at. At a single instant there always is one for triangles that are apart: from the nearest
+//! point of one to the nearest of the other; for triangles with a common corner, whose other corners are looked at as
+//! directions from there, the point nearest to the origin of all that lies between these (those of one of them turned
+//! around). Triangles with a common edge are seen along one direction, where their normals, quadratic in time, must
+//! point to it (page `star`).
 //!
-//! A direction may be any vector: it is a proof if it serves, wherever it comes from. So what follows counts the roundings of the
-//! test alone, not those of finding the direction. S is the sum of its components' sizes.
+//! A direction may be any vector: it is a proof if it serves, wherever it comes from. So what follows counts the
+//! roundings of the test alone, not those of finding the direction. S is the sum of its components' sizes.
 //!
 //! # Cuts
-//! A motion is cut at its middle, `m = fl(fl(x₀ + x₁) / 2)`, and its halves in turn, at most [`SUBDIVISION_DEPTH`] = 10 times. A middle that is
-//! rounded is not on the line; the two halves then are not halves of the motion that is meant. It must be known how far off they are.
+//! A motion is cut at its middle, `m = fl(fl(x₀ + x₁) / 2)`, and its halves in turn, at most [`SUBDIVISION_DEPTH`] = 10
+//! times. A middle that is rounded is not on the line; the two halves then are not halves of the motion that is meant.
+//! It must be known how far off they are.
 //!
-//! **Lemma.** Let x₀ and x₁ be numbers of single precision. A coordinate that is computed at `τ = i / 1024` by cutting is `x(τ)(1 + θ)`
-//! with |θ| ≤ 10.1 u, u = 2⁻⁵³.
+//! **Lemma.** Let x₀ and x₁ be numbers of single precision. A coordinate that is computed at `τ = i / 1024` by cutting
+//! is `x(τ)(1 + θ)` with |θ| ≤ 10.1 u, u = 2⁻⁵³.
 //!
-//! *Proof.* If one of the ends is zero, or both are, all is exact but for powers of two: let none be, |x₀| ≥ |x₁|, with exponents
-//! e₀ ≥ e₁: 2^e ≤ |x| < 2^(e + 1). (For numbers below the normal ones the units are larger than their exponent says, which only helps.)
+//! *Proof.* If one of the ends is zero, or both are, all is exact but for powers of two: let none be, |x₀| ≥ |x₁|, with
+//! exponents e₀ ≥ e₁: 2^e ≤ |x| < 2^(e + 1). (For numbers below the normal ones the units are larger than their
+//! exponent says, which only helps.)
 //!
-//! - *e₀ − e₁ ≤ 19.* All x(τ) at depth k are multiples of 2^(e₁ − 23 − k) and below 2^(e₀ + 1), and the sums that are halved are multiples of
-//!   2^(e₁ − 23 − (k − 1)) and below 2^(e₀ + 2): that takes at most e₀ − e₁ + 24 + k ≤ 53 bits. Everything is exact.
-//! - *e₀ − e₁ ≥ 20.* Then |x₁| < 2⁻¹⁹ X with X = |x₀|. Count τ from the small end: x(τ) differs from ± X τ by less than 2⁻¹⁹ X ≤ 2⁻⁹ X τ, for
-//!   τ ≥ 2⁻¹⁰. The error ε(τ) at depth k is at most `k (1 + 2⁻⁸) u X τ`: a middle has the mean of its ends' errors, which is
-//!   `(k − 1)(1 + 2⁻⁸) u X τ` with τ the middle of theirs, and one rounding of `u |x(τ)|(1 + 10 u)`. For k = 10 this is 10.04 u X τ ≤
-//!   10.1 u |x(τ)|.
+//! - *e₀ − e₁ ≤ 19.* All x(τ) at depth k are multiples of 2^(e₁ − 23 − k) and below 2^(e₀ + 1), and the sums that are
+//!   halved are multiples of 2^(e₁ − 23 − (k − 1)) and below 2^(e₀ + 2): that takes at most e₀ − e₁ + 24 + k ≤ 53 bits.
+//!   Everything is exact.
+//! - *e₀ − e₁ ≥ 20.* Then |x₁| < 2⁻¹⁹ X with X = |x₀|. Count τ from the small end: x(τ) differs from ± X τ by less than
+//!   2⁻¹⁹ X ≤ 2⁻⁹ X τ, for τ ≥ 2⁻¹⁰. The error ε(τ) at depth k is at most `k (1 + 2⁻⁸) u X τ`: a middle has the mean of
+//!   its ends' errors, which is `(k − 1)(1 + 2⁻⁸) u X τ` with τ the middle of theirs, and one rounding of `u |x(τ)|(1 +
+//!   10 u)`. For k = 10 this is 10.04 u X τ ≤ 10.1 u |x(τ)|.
 //!
 //! Halving itself is exact, far above the least numbers of double precision. ∎
 //!
-//! [`MIDPOINT`](super::star::MIDPOINT) is 12 u. With X now the largest coordinate at hand, every coordinate is off by at most 12 u X and every
-//! difference of two corners by `2 · 12 u X` — *however small the difference*: triangles that are small and far away feel it, and a bound
-//! relative to their edges alone would not do.
+//! [`MIDPOINT`](super::star::MIDPOINT) is 12 u. With X now the largest coordinate at hand, every coordinate is off by
+//! at most 12 u X and every difference of two corners by `2 · 12 u X` — *however small the difference*: triangles that
+//! are small and far away feel it, and a bound relative to their edges alone would not do.
 //!
 //! # Rounding
-//! - *Two triangles along a direction, single precision* ([`lie_apart`]; ends only, nothing is cut): differences from one corner, of size
-//!   at most L; n = 1 + 3 for a dot product, one more for the gap between two of them: 2 · 5 u L S = 6.0e-7 L S, against 6e-6.
-//! - *The same in double precision*: coordinates of at most X; n = 3 for a dot product, 10.1 u for the corner itself, twice, and the gap's
-//!   own rounding, 2 u X S: 28.2 u X S = 3.1e-15 X S, against 1e-13.
-//! - *Around a common corner*: offsets from it of at most L, n = 4: 4 u L S = 4.4e-16 L S, against 1e-13; and 2 · 12 u X S for the corners.
+//! - *Two triangles along a direction, single precision* ([`lie_apart`]; ends only, nothing is cut): differences from
+//!   one corner, of size at most L; n = 1 + 3 for a dot product, one more for the gap between two of them: 2 · 5 u L S
+//!   = 6.0e-7 L S, against 6e-6.
+//! - *The same in double precision*: coordinates of at most X; n = 3 for a dot product, 10.1 u for the corner itself,
+//!   twice, and the gap's own rounding, 2 u X S: 28.2 u X S = 3.1e-15 X S, against 1e-13.
+//! - *Around a common corner*: offsets from it of at most L, n = 4: 4 u L S = 4.4e-16 L S, against 1e-13; and 2 · 12 u
+//!   X S for the corners.
 //! - *Across a common edge*: page `star`.
 //!
 //! # Practice
-//! Directions that are cheap to find come first. Triangles that keep any distance are proven to do so in the end; what is
-//! left comes nearer than a part in 2^[`SUBDIVISION_DEPTH`] of the motion.
+//! Directions that are cheap to find come first. Triangles that keep any distance are proven to do so in the end; what
+//! is left comes nearer than a part in 2^[`SUBDIVISION_DEPTH`] of the motion.
 
 use std::ops::{Add, Mul};
 
@@ -58,8 +64,8 @@ pub(super) const SUBDIVISION_DEPTH: u32 = 10;
 /// A triangle's corners at both ends of a motion.
 pub(super) type Moving = [[DVec3; 3]; 2];
 
-/// Whether two moving triangles without a common corner are proven apart at every instant along the line between their middles,
-/// in f32: serves for most. Never wrongly true.
+/// Whether two moving triangles without a common corner are proven apart at every instant along the line between their
+/// middles, in f32: serves for most. Never wrongly true.
 #[inline]
 pub(super) fn lie_apart(s: [[Vec3A; 3]; 2], t: [[Vec3A; 3]; 2]) -> bool {
     lie_apart_with(SINGLE_ROUNDING, s, t)
@@ -81,8 +87,9 @@ pub(super) fn lie_apart_with(rounding: f32, s: [[Vec3A; 3]; 2], t: [[Vec3A; 3]; 
     is_in_range(bound) && gap(0) > bound && gap(1) > bound
 }
 
-/// Whether two moving triangles are proven to have nothing in common but the corners they share, at every instant. Never
-/// wrongly true. Ids are equal where corners are the same point. A state is a motion whose two ends are the same, and needs no subdivision.
+/// Whether two moving triangles are proven to have nothing in common but the corners they share, at every instant.
+/// Never wrongly true. Ids are equal where corners are the same point. A state is a motion whose two ends are the same,
+/// and needs no subdivision.
 pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 3], t_ids: [u32; 3], depth: u32) -> bool {
     stay_apart_with(Rounding::PROVEN, s, t, s_ids, t_ids, depth)
 }
@@ -121,8 +128,8 @@ pub(super) fn are_apart(rounding: Rounding, s: &Moving, t: &Moving) -> bool {
         || is_between(offset_between(&m, &n))
 }
 
-/// Whether a fixed plane through a common corner, the i-th of one and the j-th of the other, has the rest of two triangles
-/// on its two sides at both ends.
+/// Whether a fixed plane through a common corner, the i-th of one and the j-th of the other, has the rest of two
+/// triangles on its two sides at both ends.
 pub(super) fn are_apart_around(rounding: Rounding, s: &Moving, t: &Moving, (i, j): (usize, usize)) -> bool {
     let far = |p: &Moving, k: usize| p.map(|p| [p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]]);
     let (far_s, far_t) = (far(s, i), far(t, j));
@@ -137,8 +144,8 @@ pub(super) fn are_apart_around(rounding: Rounding, s: &Moving, t: &Moving, (i, j
     }
 }
 
-/// Whether two triangles with a common edge, which they have in opposite order or not, are seen side by side along a fixed
-/// direction at every instant between two ends.
+/// Whether two triangles with a common edge, which they have in opposite order or not, are seen side by side along a
+/// fixed direction at every instant between two ends.
 pub(super) fn are_apart_across(rounding: Rounding, s: &Moving, t: &Moving, opposite: bool) -> bool {
     let flipped = if opposite { *t } else { t.map(|[a, b, c]| [a, c, b]) };
     let (of_s, of_t) = (Normals::of(*s, rounding), Normals::of(flipped, rounding));
@@ -220,7 +227,8 @@ fn foot(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
     (x >= 0.0 && y >= 0.0 && x + y <= 1.0).then(|| a + x * u + y * v)
 }
 
-/// From the nearest point of one segment to the nearest of another (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
+/// From the nearest point of one segment to the nearest of another (Ericson 2005, *Real-Time Collision Detection*,
+/// 5.1.9).
 fn offset_between_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
     let (u, v, w) = (b - a, d - c, a - c);
     let part = |x: f64, of: f64| if of > 0.0 { (x / of).clamp(0.0, 1.0) } else { 0.0 };

@@ -1,14 +1,16 @@
 //! Exact answers about points, segments and triangles: no epsilon anywhere.
 //!
-//! Signs come from Shewchuk's adaptive predicates (*Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates*,
-//! Discrete & Computational Geometry 18, 1997; crate `robust`); coordinates are f64, so f32 states are taken
-//! without rounding. The predicates are exact as long as no product leaves the range of f64, which coordinates of f32 cannot: the
-//! least unit in a determinant of three is 2⁻⁴⁴⁷, the largest value about 2³⁹⁰. *Touching counts as crossing*: only what two triangles share by topology may coincide.
+//! Signs come from Shewchuk's adaptive predicates (*Adaptive Precision Floating-Point Arithmetic and Fast Robust
+//! Geometric Predicates*, Discrete & Computational Geometry 18, 1997; crate `robust`); coordinates are f64, so f32
+//! states are taken without rounding. The predicates are exact as long as no product leaves the range of f64, which
+//! coordinates of f32 cannot: the least unit in a determinant of three is 2⁻⁴⁴⁷, the largest value about 2³⁹⁰.
+//! *Touching counts as crossing*: only what two triangles share by topology may coincide.
 //!
 //! # Rounding
-//! Before that, the sign of a determinant in plain double precision is taken where it is beyond doubt: 3 differences, product and difference of
-//! the cross product, product and two sums of the dot product are n = 8 roundings of each of its 6 terms, the sum of whose sizes is the permanent P.
-//! P is computed with as many roundings, none of which cancels: error ≤ γ₈ P, 8.9e-16 of it, against 1e-14.
+//! Before that, the sign of a determinant in plain double precision is taken where it is beyond doubt: 3 differences,
+//! product and difference of the cross product, product and two sums of the dot product are n = 8 roundings of each of
+//! its 6 terms, the sum of whose sizes is the permanent P. P is computed with as many roundings, none of which cancels:
+//! error ≤ γ₈ P, 8.9e-16 of it, against 1e-14.
 
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};

@@ -2,19 +2,19 @@
 //!
 //! # Theory
 //! Two segments are apart if one lies strictly on one side of the other's line. On which side a moving point lies of a
-//! moving line is quadratic in time, and has one sign at every instant if its three Bernstein coefficients have. What lies on
-//! one line is set apart by a fixed direction. Segments from one common point have only that in common unless they run
-//! along each other: their cross product keeps its sign, or their dot product stays negative.
+//! moving line is quadratic in time, and has one sign at every instant if its three Bernstein coefficients have. What
+//! lies on one line is set apart by a fixed direction. Segments from one common point have only that in common unless
+//! they run along each other: their cross product keeps its sign, or their dot product stays negative.
 //!
-//! Where none of this holds for the whole motion, its halves are looked at. Segments that keep any distance are proven so
-//! in the end; what is left comes nearer than a part in 2^[`SUBDIVISION_DEPTH`] of the motion.
+//! Where none of this holds for the whole motion, its halves are looked at. Segments that keep any distance are proven
+//! so in the end; what is left comes nearer than a part in 2^[`SUBDIVISION_DEPTH`] of the motion.
 //!
 //! # Rounding
-//! Double precision. A product of two differences u, v of sizes at most L and L': 2 differences, the product, a sum, and the mean of two:
-//! n = 5, Σ |terms| ≤ 2 L L': 10 u L L' = 1.1e-15 L L', against 1e-13. Where the motion was cut, differences are off by e =
-//! 2 · [`MIDPOINT`](super::star::MIDPOINT) · X (page `motion`), which changes a product by at most L e + L' e + e² in each of two
-//! terms: 2 e (L + L' + e) more. Along a direction: n = 3 for a dot product of differences from one point, one for the gap: 8 u L S, and e S for the
-//! corners.
+//! Double precision. A product of two differences u, v of sizes at most L and L': 2 differences, the product, a sum,
+//! and the mean of two: n = 5, Σ |terms| ≤ 2 L L': 10 u L L' = 1.1e-15 L L', against 1e-13. Where the motion was cut,
+//! differences are off by e = 2 · [`MIDPOINT`](super::star::MIDPOINT) · X (page `motion`), which changes a product by
+//! at most L e + L' e + e² in each of two terms: 2 e (L + L' + e) more. Along a direction: n = 3 for a dot product of
+//! differences from one point, one for the gap: 8 u L S, and e S for the corners.
 
 use glam::DVec2;
 
@@ -26,8 +26,8 @@ use super::{
 /// A segment's ends at both ends of a motion. A state is a motion whose two ends are the same.
 pub(super) type Moving = [[DVec2; 2]; 2];
 
-/// Whether two moving segments are proven to have nothing in common but the end they share, at every instant. Never wrongly
-/// true. Ids are equal where ends are the same point.
+/// Whether two moving segments are proven to have nothing in common but the end they share, at every instant. Never
+/// wrongly true. Ids are equal where ends are the same point.
 pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 2], t_ids: [u32; 2]) -> bool {
     stay_apart_with(Rounding::PROVEN, s, t, s_ids, t_ids)
 }
@@ -54,7 +54,8 @@ pub(super) fn are_apart(rounding: Rounding, s: &Moving, t: &Moving) -> bool {
     is_beside(rounding, s, t) || is_beside(rounding, t, s) || is_before(rounding, s, t)
 }
 
-/// Whether two segments from a common end, the i-th of one and the j-th of the other, do not come to run along each other.
+/// Whether two segments from a common end, the i-th of one and the j-th of the other, do not come to run along each
+/// other.
 pub(super) fn are_apart_around(rounding: Rounding, s: &Moving, t: &Moving, (i, j): (usize, usize)) -> bool {
     let (u, v) = (s.map(|p| p[1 - i] - p[i]), t.map(|p| p[1 - j] - p[j]));
     let misplaced = misplaced(rounding, s, t);

@@ -26,8 +26,8 @@ pub struct Shell {
     inherited_corners: Vec<(u32, u32)>,
     /// `[triangles]` piece of surface that hangs together; empty for the skin.
     piece: Vec<u32>,
-    /// Pairs of pieces that crossed at rest, both ways, sorted: an eye in its socket, a spout stuck into a pot. They stay
-    /// stuck into each other, and their crossing may slide far.
+    /// Pairs of pieces that crossed at rest, both ways, sorted: an eye in its socket, a spout stuck into a pot. They
+    /// stay stuck into each other, and their crossing may slide far.
     inherited_pieces: Vec<(u32, u32)>,
     /// Triangles of a flat surface, by its vertices: they must stay positively oriented. Empty in space.
     flat_elements: Vec<[u32; 3]>,
@@ -182,8 +182,9 @@ impl Shell {
         }
     }
 
-    /// Adds the nodes of pairs among `near` that are not proven to stay apart during the straight motion between two states, and of
-    /// flat elements that are not proven to stay positive: of those that have a node in `moved` if given.
+    /// Adds the nodes of pairs among `near` that are not proven to stay apart during the straight motion between two
+    /// states, and of flat elements that are not proven to stay positive: of those that have a node in `moved` if
+    /// given.
     pub(crate) fn mark_unproven(
         &self,
         near: &[(u32, u32)],
@@ -229,8 +230,8 @@ impl Shell {
         pairs
     }
 
-    /// The same of the rest state, for the `[nodes]` rest positions: of a surface in space that was bound there are none by
-    /// definition, since all that [`boundary`](Self::boundary) found to cross there is inherited.
+    /// The same of the rest state, for the `[nodes]` rest positions: of a surface in space that was bound there are
+    /// none by definition, since all that [`boundary`](Self::boundary) found to cross there is inherited.
     pub(crate) fn crossings_at_rest(&self, rest: &[Vec3A]) -> Vec<(u32, u32)> {
         let was_searched = self.binding.is_some() && self.flat_elements.is_empty();
         if was_searched { Vec::new() } else { self.crossings(rest) }
@@ -242,8 +243,9 @@ impl Shell {
     }
 
     /// Makes a flat surface follow the complex's own elements where it is not proven to keep from turning over and from
-    /// crossing itself during the straight motion between two states, although they are: four-point rules overshoot where sizes
-    /// change abruptly. For a single state, both ends are the same. Returns the vertices that follow otherwise now.
+    /// crossing itself during the straight motion between two states, although they are: four-point rules overshoot
+    /// where sizes change abruptly. For a single state, both ends are the same. Returns the vertices that follow
+    /// otherwise now.
     pub fn straighten(&mut self, [from, to]: [&[Vec3A]; 2]) -> Vec<u32> {
         if self.flat_elements.is_empty() {
             return Vec::new();
@@ -254,8 +256,8 @@ impl Shell {
         self.binding.as_mut().map_or_else(Vec::new, |binding| Arc::make_mut(binding).straighten(unproven.into_iter()))
     }
 
-    /// Whether a flat surface is proven to stay as it should be during the straight motion between two states, as far as the
-    /// vertices in `changed` are concerned. True for others.
+    /// Whether a flat surface is proven to stay as it should be during the straight motion between two states, as far
+    /// as the vertices in `changed` are concerned. True for others.
     pub fn stays_sound(&self, changed: &[bool], [from, to]: [&[Vec3A]; 2]) -> bool {
         if self.flat_elements.is_empty() {
             return true;
@@ -267,8 +269,8 @@ impl Shell {
         self.unproven_corners(near, ends, concerns).is_empty()
     }
 
-    /// Corners of what is not proven to stay as it should be during a straight motion of the vertices: of flat elements that
-    /// `concerns` says yes to, which must stay positive, and of `pairs`, which must stay apart.
+    /// Corners of what is not proven to stay as it should be during a straight motion of the vertices: of flat elements
+    /// that `concerns` says yes to, which must stay positive, and of `pairs`, which must stay apart.
     fn unproven_corners(
         &self,
         pairs: Vec<(u32, u32)>,
@@ -352,8 +354,8 @@ impl CarriedState {
         })
     }
 
-    /// By surface: crossings of this state that were not there at rest, and whether it is proven that there are none at any
-    /// instant of the straight motion to it.
+    /// By surface: crossings of this state that were not there at rest, and whether it is proven that there are none at
+    /// any instant of the straight motion to it.
     pub(crate) fn crossings_from(&self, from: &Self, surfaces: Checked) -> BySurface<(Vec<(u32, u32)>, bool)> {
         let (skin, written) = rayon::join(
             || surfaces.skin.crossings_after([&from.nodes, &self.nodes]),

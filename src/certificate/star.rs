@@ -2,21 +2,23 @@
 //!
 //! # Theory
 //! Let the triangles around a vertex form one closed fan. If all of them are positively oriented seen along one
-//! direction, and the fan goes around once, the star is seen without overlap, so no two of its triangles meet but in what
-//! they share. Where corners move along straight lines, `n(τ) = u(τ) × v(τ)` is quadratic in τ, and positive along a
-//! direction at every instant if its three Bernstein coefficients `u × v`, `(u × v' + u' × v) / 2`, `u' × v'` are; the fan then goes
-//! around as often as at the start, since the ring cannot pass over the vertex.
+//! direction, and the fan goes around once, the star is seen without overlap, so no two of its triangles meet but in
+//! what they share. Where corners move along straight lines, `n(τ) = u(τ) × v(τ)` is quadratic in τ, and positive along
+//! a direction at every instant if its three Bernstein coefficients `u × v`, `(u × v' + u' × v) / 2`, `u' × v'` are;
+//! the fan then goes around as often as at the start, since the ring cannot pass over the vertex.
 //!
 //! # Rounding
-//! - *`n · d`*: each of the products goes through 2 differences, the product, the difference and the sum of two, and the product and two sums
-//!   with d: n = 8. Let M be the largest component of the edges and S the sum of the components of d. A component of n is a sum of
-//!   products of at most 2 M²: error ≤ 16 u M² S. In double precision 1.8e-15, against [`ROUNDING`]; in single precision 9.5e-7,
-//!   against [`SINGLE_ROUNDING`]. The components of a unit vector sum up to √3, of a rounded one to less than [`SUM_OF_UNIT`].
-//! - *Where a motion is cut*, edges are off by e = 2 · [`MIDPOINT`] · X (page `motion`), X the largest coordinate. A product of two
-//!   changes by at most 2 M e + e², n by twice that in each component: 2 e (2 M + e) S more.
-//! - *The plane that the turns are counted at*, across a = d × c with c = (0.618…, 0.755…, 0.219…): a is rounded by 2 u in each product, which
-//!   moves a · w by at most 2 u · 1.374 S M = 4.8 u M (1.374 is the sum of the two largest components of c, S ≤ 1.74); evaluating it on a difference has
-//!   n = 4, on terms of at most 1.374 S M: 9.6 u M. In all 14.4 u M = 8.6e-7 M, against 1.8 · 6e-6 M.
+//! - *`n · d`*: each of the products goes through 2 differences, the product, the difference and the sum of two, and
+//!   the product and two sums with d: n = 8. Let M be the largest component of the edges and S the sum of the
+//!   components of d. A component of n is a sum of products of at most 2 M²: error ≤ 16 u M² S. In double precision
+//!   1.8e-15, against [`ROUNDING`]; in single precision 9.5e-7, against [`SINGLE_ROUNDING`]. The components of a unit
+//!   vector sum up to √3, of a rounded one to less than [`SUM_OF_UNIT`].
+//! - *Where a motion is cut*, edges are off by e = 2 · [`MIDPOINT`] · X (page `motion`), X the largest coordinate. A
+//!   product of two changes by at most 2 M e + e², n by twice that in each component: 2 e (2 M + e) S more.
+//! - *The plane that the turns are counted at*, across a = d × c with c = (0.618…, 0.755…, 0.219…): a is rounded by 2 u
+//!   in each product, which moves a · w by at most 2 u · 1.374 S M = 4.8 u M (1.374 is the sum of the two largest
+//!   components of c, S ≤ 1.74); evaluating it on a difference has n = 4, on terms of at most 1.374 S M: 9.6 u M. In
+//!   all 14.4 u M = 8.6e-7 M, against 1.8 · 6e-6 M.
 //!
 //! # Practice
 //! Most pairs of triangles with near boxes are neighbours, and nearly all stars are proven with a dozen products each.
@@ -30,11 +32,12 @@ use rayon::prelude::*;
 const STARS_PER_TASK: usize = 512;
 
 /// Bounds the rounding of products of up to three differences of coordinates, relative to the product of their largest
-/// components: 2.8e-14 at most, for volumes that were cut (pages `elements`, `motion`, `star` and `segments` count), and room.
+/// components: 2.8e-14 at most, for volumes that were cut (pages `elements`, `motion`, `star` and `segments` count),
+/// and room.
 pub(super) const ROUNDING: f64 = 1.0e-13;
 
-/// Bounds how far off a coordinate is at an instant that a motion was cut at, relative to itself: 10.1 roundings of 2⁻⁵³ (page
-/// `motion`), and room.
+/// Bounds how far off a coordinate is at an instant that a motion was cut at, relative to itself: 10.1 roundings of
+/// 2⁻⁵³ (page `motion`), and room.
 pub(super) const MIDPOINT: f64 = 12.0 * 0.5 * f64::EPSILON;
 
 /// The bounds of a proof in double precision; tests lower them.
@@ -89,7 +92,8 @@ impl Stars {
         Self { start, corners }
     }
 
-    /// `[identities]` stars whose triangles are proven not to cross each other, in one state or at every instant between two.
+    /// `[identities]` stars whose triangles are proven not to cross each other, in one state or at every instant
+    /// between two.
     pub fn proven<const ENDS: usize>(&self, triangles: &[[u32; 3]], ends: [&[Vec3A]; ENDS]) -> Vec<bool> {
         self.proven_with(SINGLE_ROUNDING, triangles, ends)
     }
@@ -195,8 +199,8 @@ impl Facing {
         self.coefficients[0] + self.coefficients[1] + self.coefficients[2]
     }
 
-    /// Whether the triangle is positively oriented along a unit vector at every instant; never wrongly true. Where products
-    /// leave the range of f32, it is not proven.
+    /// Whether the triangle is positively oriented along a unit vector at every instant; never wrongly true. Where
+    /// products leave the range of f32, it is not proven.
     #[inline]
     pub fn is_along(&self, rounding: f32, direction: Vec3A) -> bool {
         let bound = rounding * self.largest * self.largest * SUM_OF_UNIT;
@@ -204,8 +208,8 @@ impl Facing {
     }
 }
 
-/// Whether a bound of rounding in f32 is large enough to hold what is lost below the range of f32 as well, and small enough
-/// that nothing it bounds has left that range above.
+/// Whether a bound of rounding in f32 is large enough to hold what is lost below the range of f32 as well, and small
+/// enough that nothing it bounds has left that range above.
 #[inline]
 pub(super) fn is_in_range(bound: f32) -> bool {
     bound > f32::MIN_POSITIVE && bound < LARGEST_BOUND
@@ -251,8 +255,8 @@ mod tests {
     use super::*;
     use crate::certificate::Surface;
 
-    /// A fan of `count` triangles around the origin that goes around `turns` times, its ring climbing with the angle but
-    /// for the last step, which leads back.
+    /// A fan of `count` triangles around the origin that goes around `turns` times, its ring climbing with the angle
+    /// but for the last step, which leads back.
     fn fan(count: u32, turns: f32) -> (Vec<[u32; 3]>, Vec<Vec3A>) {
         let ring = (0..count).map(|k| {
             let part = k as f32 / count as f32;

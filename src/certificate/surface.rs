@@ -26,9 +26,9 @@ pub(super) struct Plane {
     error: f64,
 }
 
-/// Bounds the rounding of `normal · (p − a)`, relative to the permanent of the normal (the sum of the sizes of its products) and
-/// the largest coordinate of `p − a`: 2 differences, product and difference of the normal, the difference `p − a`, a product and two
-/// sums are n = 8 roundings of each term, 8.9e-16.
+/// Bounds the rounding of `normal · (p − a)`, relative to the permanent of the normal (the sum of the sizes of its
+/// products) and the largest coordinate of `p − a`: 2 differences, product and difference of the normal, the difference
+/// `p − a`, a product and two sums are n = 8 roundings of each term, 8.9e-16.
 pub(super) const PLANE_ROUNDING: f64 = 1.0e-14;
 
 impl Plane {
@@ -132,7 +132,8 @@ impl Surface {
     /// Pairs of triangles whose boxes may meet, each as (lower, higher), of those that `keep` keeps. `bounds` gives the
     /// boxes of a triangle.
     ///
-    /// It is pairs of neighbours that are searched for: half as many, in boxes hardly larger, so that each search saves three of four.
+    /// It is pairs of neighbours that are searched for: half as many, in boxes hardly larger, so that each search saves
+    /// three of four.
     fn pairs<const ENDS: usize>(
         &self,
         bounds: impl Fn(&[u32; 3]) -> Boxes<ENDS> + Sync,
@@ -200,8 +201,8 @@ impl Surface {
     }
 
     /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart at every instant of a
-    /// straight motion of the corners. Few, where nothing crosses. Those with a triangle that is without area at rest, so that
-    /// nothing can be proven of them, are looked at in eighths of the motion.
+    /// straight motion of the corners. Few, where nothing crosses. Those with a triangle that is without area at rest,
+    /// so that nothing can be proven of them, are looked at in eighths of the motion.
     pub fn unproven_pairs(&self, from: &[Vec3A], to: &[Vec3A]) -> Vec<(u32, u32)> {
         self.unproven_among(self.candidate_pairs([from, to]), [from, to])
     }

@@ -1,8 +1,8 @@
 //! Growth: which λ comes next, and when a state counts as settled.
 //!
-//! Where nothing is in the way, growth goes in one extrapolated step from keyframe to keyframe: it starts from where the last two keyframes point,
-//! a few iterations follow that nobody guards, and the certificate of the whole motion decides. Where that is refused, the
-//! same stretch is walked in small guarded steps.
+//! Where nothing is in the way, growth goes in one extrapolated step from keyframe to keyframe: it starts from where
+//! the last two keyframes point, a few iterations follow that nobody guards, and the certificate of the whole motion
+//! decides. Where that is refused, the same stretch is walked in small guarded steps.
 
 use crate::voxel::Dimension;
 
@@ -52,8 +52,8 @@ struct Pace {
 /// In space.
 const BODY: Pace = Pace { steps: LEAST_STEPS, ln_size: LN_SIZE_PER_STEP, iterations: ITERATIONS_PER_STEP };
 
-/// In the plane, where large parts flow far at every λ: in steps half as long, each brought nearer to rest. A population
-/// cartogram locked in folded cells at the pace of bodies.
+/// In the plane, where large parts flow far at every λ: in steps half as long, each brought nearer to rest. A
+/// population cartogram locked in folded cells at the pace of bodies.
 const PICTURE: Pace = Pace { steps: 48, ln_size: 0.06, iterations: [4, 6] };
 
 /// Where the growth is.
@@ -161,8 +161,8 @@ impl Growth {
         self.free = false;
     }
 
-    /// Plans the growth to `[cells]` sizes. In the plane it walks: large parts flow far, and the correction of areas wants a
-    /// settled state.
+    /// Plans the growth to `[cells]` sizes. In the plane it walks: large parts flow far, and the correction of areas
+    /// wants a settled state.
     pub fn of(dimension: Dimension, keys: usize, importance: &[f32]) -> Self {
         let (low, high) = importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
         if dimension == Dimension::Three {

@@ -46,15 +46,15 @@ pub struct Guarded {
 pub enum Extent {
     /// At its end: enough for the skin, whose cells are thicker than a step is long.
     End,
-    /// Proven at every instant: for sheets of the boundary, which may lie nearer to each other than a step is long and must
-    /// not change places unseen, and for keyframes, whose blends are shown.
+    /// Proven at every instant: for sheets of the boundary, which may lie nearer to each other than a step is long and
+    /// must not change places unseen, and for keyframes, whose blends are shown.
     Motion,
 }
 
 /// Makes `proposed` valid by drawing nodes back towards `current`. `size` is `[cells]`, the size asked for now.
 ///
-/// `backtracking` is `[nodes]` how often each node's step was halved, or empty: what had to be drawn back in the last step starts a
-/// little freer in this one, instead of all over again.
+/// `backtracking` is `[nodes]` how often each node's step was halved, or empty: what had to be drawn back in the last
+/// step starts a little freer in this one, instead of all over again.
 pub fn guard<'a>(
     complex: &Complex,
     surfaces: impl Into<Checked<'a>>,
@@ -144,8 +144,8 @@ impl Step<'_> {
         cells.filter(|(_, solid)| enclosed.contains(solid)).flat_map(|(corners, _)| *corners).collect()
     }
 
-    /// Nodes of what the step would break, of what has a node in `moved` if given. Of a motion what is not proven counts as
-    /// broken; what keeps apart throughout does not come to lie within another either.
+    /// Nodes of what the step would break, of what has a node in `moved` if given. Of a motion what is not proven
+    /// counts as broken; what keeps apart throughout does not come to lie within another either.
     fn faults(&self, proposed: &[Vec3A], moved: Option<&[bool]>) -> Vec<u32> {
         let mut marked = bad_cells(self.complex, self.size, self.current, proposed, moved);
         let surfaces = self.surfaces.iter().zip(self.near.iter());
@@ -172,8 +172,9 @@ impl Step<'_> {
     }
 }
 
-/// Nodes of elements that the step would break, cell by cell. A volume above the floor counts only where it is also above what
-/// rounding can make of a volume that is not positive: elements that are long beside the size asked for are told exactly.
+/// Nodes of elements that the step would break, cell by cell. A volume above the floor counts only where it is also
+/// above what rounding can make of a volume that is not positive: elements that are long beside the size asked for are
+/// told exactly.
 fn bad_cells(
     complex: &Complex,
     size: &[f32],
@@ -255,7 +256,8 @@ mod tests {
     use crate::{certificate::exact, voxel::Grid};
     use glam::{DVec3, UVec3};
 
-    /// How many elements of long flat cells, for which small sizes are asked, are let through though they are not positive.
+    /// How many elements of long flat cells, for which small sizes are asked, are let through though they are not
+    /// positive.
     fn let_through(rounding: f32) -> usize {
         let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::ONE };
         let complex = Complex::from_cells(grid, &[true]);

@@ -42,8 +42,8 @@ pub use trail::Trail;
 /// (measured: the rotations, not the solve, are what converges slowly).
 const GLOBAL_STEPS: [u32; 2] = [1, 2];
 
-/// No node moves further than this part of its radius in one iteration (half a cell where cells keep their size), so that
-/// a wall of one cell is not skipped by one.
+/// No node moves further than this part of its radius in one iteration (half a cell where cells keep their size), so
+/// that a wall of one cell is not skipped by one.
 const STEP_LIMIT: f32 = 0.5;
 
 /// The same in the plane, where large parts have to flow far: a step is proven to be valid at every instant.
@@ -61,8 +61,8 @@ pub struct Problem {
     pub fidelity: f32,
     /// `[cells]` size factor at λ = 0; `None` for 1, the rest shape.
     pub from: Option<Vec<f32>>,
-    /// `[cells]` weight of each cell's misfit in the plane, `1 / s²`: a cell that shall be small is as much off by a tenth
-    /// of its size as a large one. Empty for 1, which serves in space.
+    /// `[cells]` weight of each cell's misfit in the plane, `1 / s²`: a cell that shall be small is as much off by a
+    /// tenth of its size as a large one. Empty for 1, which serves in space.
     weights: Vec<f32>,
     operator: Multigrid,
     boundary_nodes: Vec<u32>,

@@ -1,4 +1,5 @@
-//! Grow, flow in the plane, local, contact, global, guard: one iteration of the collision optimization per run of the schedule.
+//! Grow, flow in the plane, local, contact, global, guard: one iteration of the collision optimization per run of the
+//! schedule.
 
 use bevy::prelude::*;
 use glam::{Mat3A, Quat, Vec3A};
@@ -80,8 +81,8 @@ pub struct Backtracking(pub Vec<u8>);
 #[derive(Component, Debug, Default)]
 pub struct Backtracked(pub Guarded);
 
-/// Marks domains that are led by a flow: maps, whose areas matter more than the shape of a cell. Where single parts of a
-/// picture grow, the teeth of a crocodile, a flow gives them their area and takes their outline.
+/// Marks domains that are led by a flow: maps, whose areas matter more than the shape of a cell. Where single parts of
+/// a picture grow, the teeth of a crocodile, a flow gives them their area and takes their outline.
 #[derive(Component, Debug)]
 pub struct Flowing(pub Flow);
 

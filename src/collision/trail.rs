@@ -1,4 +1,5 @@
-//! The states that growth passes in the plane, where parts flow further between two keyframes than straight motions lead.
+//! The states that growth passes in the plane, where parts flow further between two keyframes than straight motions
+//! lead.
 
 use bevy::prelude::Component;
 use glam::{Vec2, Vec3A};
@@ -11,8 +12,8 @@ const MOST_BYTES: usize = 256 << 20;
 pub struct Trail(Vec<Vec<Vec2>>);
 
 impl Trail {
-    /// Keeps a flat state on the way to the next keyframe, in case that the straight motion there is not proven. From each
-    /// to the next it must be.
+    /// Keeps a flat state on the way to the next keyframe, in case that the straight motion there is not proven. From
+    /// each to the next it must be.
     pub fn pass(&mut self, positions: &[Vec3A]) {
         if size_of::<Vec2>() * positions.len() * self.0.len() > MOST_BYTES {
             let mut is_kept = false;

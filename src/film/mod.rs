@@ -1,9 +1,10 @@
 //! The film: certified states at λ_0 = 0 < … < λ_K = 1.
 //!
-//! Playback, scrubbing, recording and export read the film and never solve again. Between two keyframes a state is their
-//! linear blend, which need not be injective because both ends are. So the motion from one to the next is proven to be valid
-//! at every instant, and where that fails the film keeps more of what was solved between, or draws the later one back.
-//! Since the first keyframe is the rest state, every state of the film hangs together with it by proven motions.
+//! Playback, scrubbing, recording and export read the film and never solve again. Between two keyframes a state is
+//! their linear blend, which need not be injective because both ends are. So the motion from one to the next is proven
+//! to be valid at every instant, and where that fails the film keeps more of what was solved between, or draws the
+//! later one back. Since the first keyframe is the rest state, every state of the film hangs together with it by proven
+//! motions.
 
 pub mod plugin;
 
@@ -32,7 +33,8 @@ pub struct Keyframe {
 #[derive(Debug, Clone, Default)]
 pub struct Film {
     keyframes: Vec<Keyframe>,
-    /// λ and flat positions of states that the growth passed between keyframes where the motion is not proven, ascending.
+    /// λ and flat positions of states that the growth passed between keyframes where the motion is not proven,
+    /// ascending.
     passed: Vec<(f32, Vec<Vec2>)>,
     /// Vertices that follow the states otherwise than when the keyframes were certified.
     stale: Vec<u32>,
@@ -41,8 +43,8 @@ pub struct Film {
 /// Between keyframes nearer in λ than this no other is put.
 const SHORTEST_STEP: f32 = 0.03;
 
-/// The same in the plane, where what was passed lies near to each other: as a part of the distance of the keyframes that
-/// were asked for.
+/// The same in the plane, where what was passed lies near to each other: as a part of the distance of the keyframes
+/// that were asked for.
 const SHORTEST_FLAT_STEP: f32 = 0.008;
 
 impl Film {
@@ -69,8 +71,8 @@ impl Film {
         self.keyframes.push(keyframe);
     }
 
-    /// Makes flat surfaces follow the complex during the straight motion between two states, where they must; whether that changed
-    /// any.
+    /// Makes flat surfaces follow the complex during the straight motion between two states, where they must; whether
+    /// that changed any.
     fn straighten(&mut self, surfaces: &mut Surfaces, motion: [&[Vec3A]; 2]) -> bool {
         let before = self.stale.len();
         self.stale.extend(surfaces.straighten(motion));
@@ -90,9 +92,9 @@ impl Film {
         &self.keyframes
     }
 
-    /// Makes every blend of two neighbouring keyframes valid, as [`certify_motion`] has it. A flat surface that alone prevents it
-    /// follows the complex. Else there are new keyframes between, the states that were passed there first, and where that
-    /// does not help, the later one is drawn back to what can be reached from the earlier.
+    /// Makes every blend of two neighbouring keyframes valid, as [`certify_motion`] has it. A flat surface that alone
+    /// prevents it follows the complex. Else there are new keyframes between, the states that were passed there first,
+    /// and where that does not help, the later one is drawn back to what can be reached from the earlier.
     pub fn mend(&mut self, complex: &Complex, surfaces: &mut Surfaces, size: &[f32]) {
         let shortest = match complex.dimension {
             Dimension::Two => SHORTEST_FLAT_STEP / self.keyframes.len().saturating_sub(1).max(1) as f32,
@@ -149,8 +151,8 @@ impl Film {
         self.passed = Vec::new();
     }
 
-    /// Certifies anew what stale vertices have changed: what is proven to be sound where they are stays certified. Whether
-    /// there were any.
+    /// Certifies anew what stale vertices have changed: what is proven to be sound where they are stays certified.
+    /// Whether there were any.
     fn certify_again(&mut self, complex: &Complex, surfaces: &Surfaces) -> bool {
         let stale = std::mem::take(&mut self.stale);
         let Some(&last) = stale.iter().max() else { return false };

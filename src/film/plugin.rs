@@ -184,8 +184,8 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
     }
 }
 
-/// The certificate of an extrapolated step's end, if the motion there is proven to be valid and no element comes out flatter than the guard
-/// would let it.
+/// The certificate of an extrapolated step's end, if the motion there is proven to be valid and no element comes out
+/// flatter than the guard would let it.
 fn certify_extrapolated(
     complex: &Complex,
     surfaces: &Surfaces,

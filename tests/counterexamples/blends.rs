@@ -13,8 +13,9 @@ use homunculus::{
 
 use super::common::{Quiet, Random, flat, shared, states, warp};
 
-/// On the map of the states of the USA, with population as area, a tip passed another within an eighth of the motion between
-/// two keyframes, which no look at the eighths told; mended on 22 November 2026, when motions in the plane came to be proven.
+/// On the map of the states of the USA, with population as area, a tip passed another within an eighth of the motion
+/// between two keyframes, which no look at the eighths told; mended on 22 November 2026, when motions in the plane came
+/// to be proven.
 #[test]
 fn the_map_on_which_a_tip_passed_another() {
     let Some((picture, field)) = states() else { return };
@@ -56,8 +57,8 @@ fn spokes() -> Option<Boundary> {
     Some(boundary::read(&file).unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// The blends between certified keyframes of this wheel crossed; mended on 22 November 2026, when what cannot be reached came to
-/// be drawn back.
+/// The blends between certified keyframes of this wheel crossed; mended on 22 November 2026, when what cannot be
+/// reached came to be drawn back.
 #[test]
 fn the_wheel_whose_blends_crossed() {
     let Some(boundary) = spokes() else { return };

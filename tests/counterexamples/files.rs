@@ -4,8 +4,8 @@ use homunculus::{boundary, voxel::Grid};
 
 use super::common::cuboids;
 
-/// A binary PLY that is one byte short of its only vertex was not named as such but left its reader without a word about the
-/// face that is missing; found by the fuzz of the readers, mended on 22 November 2026.
+/// A binary PLY that is one byte short of its only vertex was not named as such but left its reader without a word
+/// about the face that is missing; found by the fuzz of the readers, mended on 22 November 2026.
 #[test]
 fn a_ply_that_is_one_byte_short() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -15,8 +15,8 @@ fn a_ply_that_is_one_byte_short() {
     assert!(text.contains("claims 1 face rows, but only 0 bytes are left"), "{text}");
 }
 
-/// The grid around a box of side one did not hold it at a resolution of 15 cells, since a size was rounded down; mended on
-/// 22 November 2026.
+/// The grid around a box of side one did not hold it at a resolution of 15 cells, since a size was rounded down; mended
+/// on 22 November 2026.
 #[test]
 fn a_box_of_side_one_at_resolution_15() {
     let cube = cuboids("cube", &[([0.0; 3], [1.0; 3])]);

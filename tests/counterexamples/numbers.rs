@@ -1,6 +1,6 @@
-//! Numbers at the edge of what single and double precision can say, of which something was proven that is not so. All were found
-//! when the bounds of rounding were derived and attacked, and mended on 28 November 2026; the attacks in `src/certificate` hold
-//! many more of each kind.
+//! Numbers at the edge of what single and double precision can say, of which something was proven that is not so. All
+//! were found when the bounds of rounding were derived and attacked, and mended on 28 November 2026; the attacks in
+//! `src/certificate` hold many more of each kind.
 
 use glam::{IVec3, Vec3A};
 use homunculus::{
@@ -29,8 +29,8 @@ fn inverted(complex: &Complex, places: &[Vec3A]) -> usize {
     KUHN.into_iter().map(at).filter(|&[a, b, c, d]| orientation(a, b, c, d) <= 0).count()
 }
 
-/// A cell of 10⁻¹⁴ cells, some of its elements inverted, was certified to have none: its volumes are below the range of single
-/// precision, and so was the bound of their rounding.
+/// A cell of 10⁻¹⁴ cells, some of its elements inverted, was certified to have none: its volumes are below the range of
+/// single precision, and so was the bound of their rounding.
 #[test]
 fn a_cell_below_the_range_of_single_precision() {
     let (complex, [places]) = cell([BELOW]);
@@ -39,8 +39,8 @@ fn a_cell_below_the_range_of_single_precision() {
     assert_eq!(certify(&complex, &Surfaces::skin_of(&complex), &places).inverted(), inverted);
 }
 
-/// A cell whose edges are nearly one line, some of its elements inverted half-way, was proven to keep them all positive: what was
-/// taken for the inverse of its mean edges was rounding and nothing else.
+/// A cell whose edges are nearly one line, some of its elements inverted half-way, was proven to keep them all
+/// positive: what was taken for the inverse of its mean edges was rounding and nothing else.
 #[test]
 fn a_cell_drawn_out_to_a_line() {
     let (complex, [from, to]) = cell(LINE);
@@ -71,8 +71,8 @@ fn triangles_beyond_the_range_of_single_precision() {
     assert!(crossing > 0);
 }
 
-/// Two segments of the plane, one beginning on the middle of the other at every instant, were proven to stay apart: the instants
-/// that their motion was cut at were taken for exact, though one end is 10²⁰ times as far away as the other.
+/// Two segments of the plane, one beginning on the middle of the other at every instant, were proven to stay apart: the
+/// instants that their motion was cut at were taken for exact, though one end is 10²⁰ times as far away as the other.
 #[test]
 fn segments_that_come_from_afar() {
     let at = |x: f32, y: f32| Vec3A::new(x, y, 0.0);

@@ -16,8 +16,8 @@ fn motion(complex: &Complex, from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool
     certify_motion(complex, &surfaces, &from, &to)
 }
 
-/// Two cells two apart, and where the second goes so that its edge is beside the other's from `enters` of the motion on and
-/// above it from `leaves` on.
+/// Two cells two apart, and where the second goes so that its edge is beside the other's from `enters` of the motion on
+/// and above it from `leaves` on.
 fn passing(enters: f32, leaves: f32) -> (Complex, Vec<Vec3A>) {
     let complex = complex(IVec3::new(3, 1, 1), |c| c.x != 1);
     let by = Vec3A::new(-1.0 / enters, 1.0 / leaves, 0.0);
@@ -26,8 +26,8 @@ fn passing(enters: f32, leaves: f32) -> (Complex, Vec<Vec3A>) {
     (complex, to)
 }
 
-/// One edge cuts another from 0.918 to 0.92 of the motion, while none of the eighths of it, which alone were looked at, is at
-/// fault; mended on 22 November 2026, when motions in space came to be proven.
+/// One edge cuts another from 0.918 to 0.92 of the motion, while none of the eighths of it, which alone were looked at,
+/// is at fault; mended on 22 November 2026, when motions in space came to be proven.
 #[test]
 fn the_edge_that_cuts_another_between_two_eighths() {
     let (complex, to) = passing(0.918, 0.92);
@@ -65,8 +65,8 @@ fn lifted(complex: &Complex, positions: &[Vec3A], by: f32) -> Vec<Vec3A> {
     positions.iter().zip(&complex.body).map(|(p, &body)| *p + up(body)).collect()
 }
 
-/// A mote in front of a box was inside it after one step, no face crossing another before or after, and the guard let it pass;
-/// mended on 22 November 2026, when bodies within bodies came to be seen.
+/// A mote in front of a box was inside it after one step, no face crossing another before or after, and the guard let
+/// it pass; mended on 22 November 2026, when bodies within bodies came to be seen.
 #[test]
 fn the_mote_that_was_swallowed() {
     let (complex, mut positions) = mote();
