@@ -11,7 +11,8 @@
 //! | symbol | what | here |
 //! |---|---|---|
 //! | B, B' | boundary, warped boundary | [`boundary::Boundary`], [`run::Frame::positions`] |
-//! | C = (V, E), C_t = (V, T) | nodes, edges, tetrahedra of the voxelized inside; lattice of cell size h | [`voxel::Complex`] |
+//! | C = (V, E), C_t = (V, T) | nodes, edges, tetrahedra of the voxelized inside; lattice of cell size h |
+//! [`voxel::Complex`] |
 //! | F, f | importance: linear size factor asked for, > 0 | [`importance::Stack`], [`importance::plugin::Importance`] |
 //! | V' | linear solution (Eq. 1) | [`edge::plugin::LinearSolution`] |
 //! | λ | growth, 0 = rest, 1 = all of it | [`collision::Growth`] |
@@ -30,13 +31,15 @@
 //! | [`film`] | – | certified states | what is played, exported, recorded |
 //! | [`transfer`] | 3.5 | B, V'' | B' |
 //!
-//! [`mod@reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once, [`run`] runs it.
+//! [`mod@reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once, [`run`] runs
+//! it.
 //!
 //! # What is promised, and what carries it
 //!
-//! - A state is *certified* when every element is positively oriented, no two faces of the complex's skin cross, no body
-//!   lies within another, and the surface that is written has no crossing the input had not. Signs are exact; touching
-//!   counts as crossing. Blends between two keyframes are checked at several places, not proven throughout.
+//! - A state is *certified* when every element is positively oriented, no two faces of the complex's skin cross, no
+//!   body lies within another, and the surface that is written has no crossing the input had not. Signs are exact;
+//!   touching counts as crossing. Blends between two keyframes are proven to be valid at every instant (see
+//!   [`certificate`]).
 //! - The collision optimization starts at rest, which is valid, and its [guard](collision::guard) lets a step through
 //!   only where the next state is valid too.
 //! - The same input gives the same bits for any number of threads: loops gather, sums go in fixed chunks.

@@ -2,17 +2,16 @@
 //! by the engine's certificate and, independently of it, by comparing everything with everything from the written places
 //! alone; regions reach the areas asked for.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+mod common;
 
-use glam::{DVec2, DVec3, UVec2, Vec3A};
-use homunculus::boundary::{Boundary, Regions};
-use homunculus::certificate::Checked;
-use homunculus::importance;
-use homunculus::importance::field::{Field, Layer};
-use homunculus::picture::{self, Cut, FlatMesh, Picture};
+use std::{path::Path, sync::Arc};
+
+use common::{flat, shared, states};
+use glam::{DVec2, DVec3, UVec2};
+use homunculus::boundary::Boundary;
+use homunculus::importance::{self, field::Field};
+use homunculus::picture::{self, Cut, FlatMesh};
 use homunculus::voxel::Flat;
-use homunculus::voxel::blend;
 use homunculus::{
     run::{Domain, Observer, Progress, Solved, solve as solve_domain},
     settings::Settings,
@@ -34,26 +33,6 @@ fn settings(resolution: u32, fidelity: f32) -> Settings {
 
 fn solve(flat: Flat, settings: Settings) -> Solved {
     solve_domain(Domain::picture(Arc::new(flat), settings), &Patient).expect("a solved picture")
-}
-
-fn flat(picture: &Picture, field: &Field) -> Flat {
-    let regions = field.regions.as_ref();
-    Flat {
-        name: "test".into(),
-        size: picture.size,
-        inside: picture.domain.clone(),
-        importance: field.values.clone(),
-        regions: regions.map(|r| Regions { names: r.names.clone(), of_vertex: r.of_pixel.clone() }),
-    }
-}
-
-fn shared(file: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(file);
-    if !path.exists() {
-        eprintln!("skipped: {} is not there", path.display());
-        return None;
-    }
-    Some(path)
 }
 
 /// A smooth field between a quarter and four from a few bumps; the same for the same seed.
@@ -125,7 +104,7 @@ fn expect_sound(name: &str, solved: &Solved) {
 #[test]
 fn random_fields_on_real_pictures_stay_sound() {
     for file in ["crocodile_512.png", "magnet_512.png", "twemoji_snake_512.png", "us_states.png"] {
-        let Some(path) = shared(&format!("images/{file}")) else { continue };
+        let Some(path) = shared("images").map(|images| images.join(file)) else { continue };
         let picture = picture::read(&path, &Cut::default()).expect("a picture");
         for seed in 1..=2 {
             let mut flat = flat(&picture, &Field::load(&[], 1.0, false, &picture, Path::new("")).expect("a field"));
@@ -174,23 +153,6 @@ fn a_hole_is_not_closed_and_an_island_stays_in_it() {
     expect_sound("ring", &solved);
 }
 
-/// The map of the states of the USA, whose population shall become area, if it is there.
-fn states() -> Option<(Picture, Field)> {
-    let map = shared("images/us_states.png")?;
-    let (ids, facts) = (shared("images/us_states_id.png")?, shared("facts/us_states.csv")?);
-    let folder = tempfile::tempdir().expect("a folder");
-    let table = folder.path().join("population.csv");
-    let text = std::fs::read_to_string(facts).expect("a table");
-    let rows = text.lines().filter(|line| line.chars().next().is_some_and(|c| c.is_ascii_digit()));
-    let rows = rows.map(|line| line.split(',').take(3).collect::<Vec<_>>().join(","));
-    std::fs::write(&table, format!("region,name,value\n{}\n", rows.collect::<Vec<_>>().join("\n"))).expect("written");
-
-    let picture = picture::read(&map, &Cut::default()).expect("a picture");
-    let layer = Layer::Regions { ids, values: table, per_area: true };
-    let field = Field::load(&[layer], 1.0, false, &picture, Path::new("")).expect("a field");
-    Some((picture, field))
-}
-
 #[test]
 fn states_become_as_large_as_their_population() {
     let Some((picture, field)) = states() else { return };
@@ -219,25 +181,6 @@ fn states_become_as_large_as_their_population() {
     let mut unchanged = importance::areas(&field, &picture, &mesh, &mesh.rest);
     unchanged.retain(|a| a.name != "District of Columbia");
     assert!(importance::worst(&unchanged).expect("states").error() > 1.0);
-}
-
-/// Between two keyframes of this map a tip once passed another within an eighth of the way, seen at neither end of it.
-#[test]
-fn no_tip_passes_another_between_two_looks() {
-    let Some((picture, field)) = states() else { return };
-    let solved = solve(flat(&picture, &field), Settings { keys: 8, ..settings(320, 1.0) });
-    let crossings = |from: &[Vec3A], to: &[Vec3A]| -> usize {
-        let states = (0..=32).map(|part| blend(from, to, part as f32 / 32.0));
-        states
-            .flat_map(|state| Checked::from(&solved.surfaces).iter().map(move |shell| shell.crossings(&state).len()))
-            .sum()
-    };
-    let keyframes = solved.film.keyframes();
-    for pair in keyframes.windows(2) {
-        assert_eq!(crossings(&pair[0].positions, &pair[1].positions), 0, "after λ {}", pair[0].lambda);
-    }
-    // Sabotage: on the way to the linear solution things do pass through each other.
-    assert!(crossings(&solved.complex.rest, &solved.linear) > 0);
 }
 
 #[test]

@@ -1,18 +1,108 @@
 //! The certificate: no inverted element, no crossing, decided by exact predicates.
 //!
 //! # Theory
-//! A piecewise linear map of the complex is injective if every element is positively oriented and the mapped boundary
-//! does not cross itself; with several bodies also none may lie inside another. The surface that is written, B', is made of
-//! flat triangles between moved vertices, so it is checked too: it must have no crossing that the input had not.
+//! The complex C is a set of simplices (tetrahedra; in the plane triangles) that fit face to face. A state gives every
+//! node a place, and φ is the map of C that is linear in each element. ∂C is the *skin*: the faces with an element on
+//! one side only. A *solid* is a set of cells that hang together by faces; parts that hang together by nodes or edges
+//! alone are several.
+//!
+//! **Theorem.** If
+//!
+//! 1. every element is positively oriented,
+//! 2. the skin has no two faces that meet outside what they share,
+//! 3. no solid lies inside another one, and
+//! 4. the complement of each solid hangs together (it has no cavity, in the plane no hole),
+//!
+//! then φ is injective on the interior of C and on the skin.
+//!
+//! *Proof.* Take one solid K. By 2, φ maps ∂K one to one, so that φ(∂K) is the same space as ∂K, and its complement has
+//! as many parts (Alexander duality: their number depends on the space alone, not on how it lies). At rest these are
+//! the interior of K and, by 4, one part outside; so φ(∂K) has exactly two parts as complement, of which one is
+//! bounded. For a point y that is in neither φ(∂K) nor the image of an element's boundary, the degree of φ at y is the
+//! number of elements over y with positive orientation less those with negative, by 1 simply the number of elements
+//! over y. The degree is constant in each part of the complement of φ(∂K): 0 in the unbounded one, since φ(K) is
+//! bounded; and it changes by one across a face of the skin, which has an element on one side. So it is 1 in the
+//! bounded part, being no negative number: one element is over almost every point of it, and none over any outside. Two
+//! inner points of K with one image y would both have small neighbourhoods whose images cover all points near y, since
+//! the degree of φ around each is positive; then two elements would be over most of these. There are none. Two solids:
+//! their skins have nothing in common but what they share, so that the inside of one either lies in the inside of the
+//! other, which 3 excludes, or they are disjoint. ∎
+//!
+//! That positive elements and a one-to-one boundary are enough is the theorem of global inversion, for maps of this
+//! kind in Lipman, *Bijective Mappings of Meshes with Boundary and the Degree in Mesh Processing*, SIAM J. Imaging
+//! Sciences 7 (2014), and used for tetrahedra in Aigerman and Lipman, *Injective and Bounded Distortion Mappings in
+//! 3D*, ACM Trans. Graph. 32 (2013). For elastic bodies it is due to Ball, *Global invertibility of Sobolev functions
+//! and the interpenetration of matter*, Proc. Royal Society of Edinburgh 88A (1981).
+//!
+//! Condition 4 is needed. A ring can be laid twice over a disc around two points where the angles of its elements sum
+//! up to two turns, all elements positive and both its edges without a crossing, the inner one turned inside out.
+//! Bodies have no cavities, since voxelization fills them. Pictures have holes, and for these a single state is not
+//! proven by conditions 1 to 3: it takes a *motion* from a state that is, such as the rest state. While the skin moves
+//! without meeting itself, the degree at a point changes only when the skin passes over it, and by the same amount at
+//! every face for ever; so what was injective stays it. [`certify_motion`] proves motions, and the keyframes of a
+//! [film](crate::film) hang together by such proofs from the rest state on.
+//!
+//! The surface that is written, B', is made of flat triangles between vertices that φ moves. It is another map, so it
+//! is checked too: it must have no crossing that the input had not. In the plane its triangles must be positively
+//! oriented. Triangles without area at rest are left out: they have no sides. Such pairs are looked at at nine instants
+//! of a motion, which is no proof.
+//!
+//! # Motions
+//! Between two states all corners move along straight lines, `x(τ) = (1 − τ) x₀ + τ x₁`, `0 ≤ τ ≤ 1`. What is proven
+//! holds for these real numbers, at every instant. A blend that is drawn is rounded once more, each coordinate by some
+//! units in the last place. How elements are proven stands at the head of `elements.rs`, pairs of triangles of
+//! `motion.rs` and `star.rs`, segments of `segments.rs`.
+//!
+//! This is continuous collision detection with another question. There, the time of the first contact is searched for:
+//! as a root of the cubic of four points becoming coplanar (Provot, *Collision and self-collision handling in cloth
+//! model dedicated to design garments*, 1997), by conservative advancement, which steps as far as the present distance
+//! and a bound on the speed allow (Mirtich, *Impulse-based Dynamic Simulation of Rigid Body Systems*, thesis, Berkeley
+//! 1996; Tang, Kim and Manocha, *Continuous Collision Detection for Non-Rigid Contact Computations using Local
+//! Advancement*, ICRA 2010), by parity of crossings in exact arithmetic (Brochu, Edwards and Bridson, *Efficient
+//! Geometrically Exact Continuous Collision Detection*, ACM Trans. Graph. 31, 2012), or by dividing the box of times
+//! and parameters, rounding outward (Wang et al., *A Large-scale Benchmark and an Inclusion-based Algorithm for
+//! Continuous Collision Detection*, ACM Trans. Graph. 40, 2021, who found wrong answers in most programs before).
+//! Incremental Potential Contact (Li et al., ACM Trans. Graph. 39, 2020) shortens steps by such times and has a barrier
+//! keep things apart. Here nothing asks when: a motion is proven to be free of contact, or it is not and is cut or
+//! drawn back. So one direction that sets two triangles apart at both ends is a proof for all instants between, at the
+//! cost of a few products and with a bound of rounding that is known beforehand; like conservative advancement it needs
+//! more pieces the nearer things come, like the method of inclusion it errs to one side only. That volumes stay
+//! positive is told by Bernstein coefficients, as Johnen, Remacle and Geuzaine do for the Jacobian of curved elements
+//! (*Geometrical validity of curvilinear finite elements*, J. Comput. Phys. 233, 2013); their variable is the place in
+//! an element, ours the time.
+//!
+//! # Rounding
+//! Let u be 2⁻²⁴ in single precision, 2⁻⁵³ in double. The standard model (Higham, *Accuracy and Stability of Numerical
+//! Algorithms*, 2002, ch. 2 and 3) is `fl(a ∘ b) = (a ∘ b)(1 + δ)`, |δ| ≤ u, for + − × ÷; a product of n such factors
+//! is 1 + θ with
+//! |θ| ≤ γₙ = n u / (1 − n u). So a sum of products, computed in any order without cancelling a single term beforehand,
+//! is off by at most `γₙ Σ |terms|` where n is the largest number of roundings that any term goes through. Halving and
+//! changing the sign are exact. Each page counts n and Σ |terms| for its own formulas, and each constant has at least
+//! twice the room that it needs, which pays for the factor 1 / (1 − n u), for bounds that are rounded themselves (some
+//! (1 − u)⁵), and for sizes being measured on rounded differences, `M_true ≤ M / (1 − u)`.
+//!
+//! The model fails below the normal numbers: a product may lose up to half of the smallest number, η = 2⁻¹⁵⁰ in single
+//! precision. (Sums and differences lose nothing there.) Bounds in single precision count only above 2⁻¹²⁶, which is
+//! 2²⁴ η: what a few products lose is nothing beside that. In double precision it cannot happen here: coordinates are
+//! single, hence multiples of 2⁻¹⁴⁹, so that what is a product of three of their differences is either 0 or not far
+//! below 2⁻⁴⁴⁷, and with a direction that is such a product itself not far below 2⁻⁶⁰⁰. Above, a product may become
+//! infinite. Single precision counts only where the bound is less than 10³⁰ or the result is finite; in double
+//! precision 2¹²⁸ to the fourth is still finite. Comparisons are written so that what is no number proves nothing.
+//!
+//! All of this is attacked by tests, with bounds too small as sabotage (`attacks`).
 //!
 //! # Practice
-//! Exact signs (crate `robust`) behind an interval filter; boxes in a tree that is refitted. Touching counts as crossing.
-//! Most is proven at once and without exact signs: whole cells by how little they differ from a linear map, the
-//! triangles around a vertex by being seen side by side, and both also for all blends of two states. The one way to make
-//! a [`Certificate`] is to check the state, by [`certify`], [`certify_rest`] or together with the way to it by
-//! [`certify_way`].
+//! Exact signs (crate `robust`) behind a filter of rounding bounds; boxes in a tree that is refitted. Touching counts
+//! as crossing. Most is proven at once and without exact signs: whole cells by how little they differ from a linear
+//! map, the triangles around a vertex by being seen side by side, and both also for all blends of two states. Only a
+//! check makes a [`Certificate`]: that of a state by [`certify`] or [`certify_rest`], or together with the motion to it
+//! by [`certify_motion`].
 
+#[cfg(test)]
+mod attacks;
 mod elements;
+#[cfg(test)]
+pub(crate) mod exact;
 mod fidelity;
 mod motion;
 mod place;
@@ -25,11 +115,11 @@ mod surface;
 mod surfaces;
 mod tree;
 
-pub(crate) use elements::{cell_stays_positive, flat_stays_positive};
+pub(crate) use elements::{ROUNDING as VOLUME_ROUNDING, cell_stays_positive, flat_stays_positive};
 pub use fidelity::{Distortion, Fidelity, RegionFidelity, distortion, fidelity, volume_ratios};
 pub use place::Places;
 pub use predicates::{Triangle, collinear, is_positive, orientation, segments_cross, triangles_cross};
-pub use shell::{Placed, Shell};
+pub use shell::{CarriedState, Shell};
 pub use surface::Surface;
 pub(crate) use surfaces::BySurface;
 pub use surfaces::{Checked, Surfaces};
@@ -40,7 +130,7 @@ use rayon::prelude::*;
 
 use crate::voxel::{Complex, Dimension};
 
-/// What the check of one state found. Only [`certify`], [`certify_rest`] and [`certify_way`] make one.
+/// What the check of one state found. Only [`certify`], [`certify_rest`] and [`certify_motion`] make one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     inverted: usize,
@@ -93,8 +183,8 @@ pub fn certify<'a>(complex: &Complex, surfaces: impl Into<Checked<'a>>, position
     check(complex, surfaces.into(), positions, |shell| shell.crossings(positions))
 }
 
-/// Checks the rest state like [`certify`]. What of a surface in space crosses at rest was found when the shell was made,
-/// and is inherited.
+/// Checks the rest state like [`certify`]. What of a surface in space crosses at rest was found when the shell was
+/// made, and is inherited.
 pub fn certify_rest<'a>(complex: &Complex, surfaces: impl Into<Checked<'a>>) -> Certificate {
     check(complex, surfaces.into(), &complex.rest, |shell| shell.crossings_at_rest(&complex.rest))
 }
@@ -112,22 +202,22 @@ fn check(
     conclude(complex, surfaces, positions, elements, &BySurface { skin, written })
 }
 
-/// Checks a state like [`certify`], and the straight way to it from a valid one: whether every blend of the two is proven
-/// to be valid, at every instant. What keeps apart on the way does not come to lie within another either.
-pub fn certify_way<'a>(
+/// Checks a state like [`certify`], and the straight motion to it from a valid one: whether every blend of the two is
+/// proven to be valid, at every instant. What keeps apart during the motion does not come to lie within another either.
+pub fn certify_motion<'a>(
     complex: &Complex,
     surfaces: impl Into<Checked<'a>>,
-    from: &Placed,
-    to: &Placed,
+    from: &CarriedState,
+    to: &CarriedState,
 ) -> (Certificate, bool) {
     let surfaces = surfaces.into();
     let ((elements, unfolded), found) =
-        rayon::join(|| elements::check_way(complex, from.nodes(), to.nodes()), || to.crossings_from(from, surfaces));
-    let clear = unfolded && found.iter().all(|(_, clear)| *clear) && to.stays_unfolded_from(from, surfaces);
+        rayon::join(|| elements::check_motion(complex, from.nodes(), to.nodes()), || to.crossings_from(from, surfaces));
+    let proven = unfolded && found.iter().all(|(_, proven)| *proven) && to.stays_unfolded_from(from, surfaces);
     let crossings = BySurface { skin: found.skin.0, written: found.written.map(|(crossings, _)| crossings) };
     let certificate = conclude(complex, surfaces, to.nodes(), elements, &crossings);
-    let clear = clear && certificate.certified();
-    (certificate, clear)
+    let proven = proven && certificate.certified();
+    (certificate, proven)
 }
 
 /// What the findings on a state come to.
@@ -165,8 +255,11 @@ fn conclude(
 /// Solids that lie inside another one: one point of each is looked at, which tells for all of it as long as no skins
 /// cross. Parts that hang together by nodes or edges alone are solids of their own.
 ///
-/// The winding number of a closed skin around a point off it is a whole number; summed as solid angles (van Oosterom and
-/// Strackee 1983) it comes out within far less than the half that would be needed to mistake it.
+/// The winding number of a closed skin around a point off it is a whole number; summed as solid angles (van Oosterom
+/// and Strackee 1983) it comes out within far less than the half that would be needed to mistake it. In space this is
+/// the one answer that is not exact: the point is rounded, and so is the side of a face that it is on. It would take an
+/// element, or a gap between two skins, that is thinner than some 2⁻⁵⁰ of its coordinates. A motion that is proven does
+/// not need it.
 pub(crate) fn enclosed_solids(complex: &Complex, positions: &[Vec3A]) -> Vec<u32> {
     if complex.solids < 2 {
         return Vec::new();
@@ -208,7 +301,7 @@ pub(crate) fn enclosed_solids(complex: &Complex, positions: &[Vec3A]) -> Vec<u32
 fn winding<'a>(dimension: Dimension, faces: impl Iterator<Item = &'a [u32; 3]>, positions: &[Vec3A], p: DVec3) -> f64 {
     let corners = |face: &[u32; 3]| face.map(|v| positions[v as usize].as_dvec3());
     match dimension {
-        // Lines that cross the ray to the right, by the way they go; exact.
+        // Lines that cross the ray to the right, by the direction they go in; exact.
         Dimension::Two => {
             let crossing = |face: &[u32; 3]| {
                 let [a, b, _] = corners(face);

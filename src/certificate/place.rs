@@ -1,9 +1,9 @@
 //! Where a state is faulty, as triangles of the boundary: what a picture marks.
 //!
 //! # Theory
-//! Faults are found on the complex as well as on the surface it carries. A crossing pair of the surface is two triangles of
-//! it. A crossing pair of the skin, an inverted element and a solid within another one are shown by the triangles whose
-//! corners lie in the cells concerned.
+//! Faults are found on the complex as well as on the surface it carries. A crossing pair of the surface is two
+//! triangles of it. A crossing pair of the skin, an inverted element and a solid within another one are shown by the
+//! triangles whose corners lie in the cells concerned.
 
 use glam::{DVec3, Vec3A};
 
@@ -32,8 +32,8 @@ impl Places {
 
     /// The triangles of the boundary that are faulty in a state, rising. `surfaces` as for [`certify`](super::certify).
     ///
-    /// Empty exactly where the state is certified, unless a fault lies where no triangle has a corner, or the outline of a
-    /// picture's mesh crosses itself where that of its cells does not.
+    /// Empty exactly where the state is certified, unless a fault lies where no triangle has a corner, or the outline
+    /// of a picture's mesh crosses itself where that of its cells does not.
     pub fn faulty<'a>(&self, complex: &Complex, surfaces: impl Into<Checked<'a>>, positions: &[Vec3A]) -> Vec<u32> {
         let surfaces = surfaces.into();
         let mut is_bad = vec![false; complex.cells.len()];
@@ -82,8 +82,8 @@ impl Places {
 /// A mark is seen when it is as wide as one of so many cells along the longest side.
 const SEEN: u32 = 64;
 
-/// Triangles of a picture's mesh where its outline crosses itself in a state, with as many cells around as it takes to be
-/// seen.
+/// Triangles of a picture's mesh where its outline crosses itself in a state, with as many cells around as it takes to
+/// be seen.
 fn around_crossings(complex: &Complex, skin: &Shell, positions: &[Vec3A]) -> Vec<u32> {
     let faces = skin.crossings(positions).into_iter().flat_map(|(s, t)| [s, t]);
     let mut cells: Vec<u32> = faces.map(|face| complex.cell_of_face[face as usize]).collect();

@@ -2,26 +2,38 @@
 //!
 //! # Theory
 //! Two segments are apart if one lies strictly on one side of the other's line. On which side a moving point lies of a
-//! moving line is quadratic in time, and has one sign all the way if its three Bernstein coefficients have. What lies on
-//! one line is set apart by a fixed direction. Segments from one common point have only that in common unless they run
-//! along each other: their cross product keeps its sign, or their dot product stays negative.
+//! moving line is quadratic in time, and has one sign at every instant if its three Bernstein coefficients have. What
+//! lies on one line is set apart by a fixed direction. Segments from one common point have only that in common unless
+//! they run along each other: their cross product keeps its sign, or their dot product stays negative.
 //!
-//! Where none of this holds for the whole motion, its halves are looked at. Segments that keep any distance are proven so
-//! in the end; what is left comes nearer than a part in 2^[`HALVINGS`] of the way.
+//! Where none of this holds for the whole motion, its halves are looked at. Segments that keep any distance are proven
+//! so in the end; what is left comes nearer than a part in 2^[`SUBDIVISION_DEPTH`] of the motion.
+//!
+//! # Rounding
+//! Double precision. A product of two differences u, v of sizes at most L and L': 2 differences, the product, a sum,
+//! and the mean of two: n = 5, Σ |terms| ≤ 2 L L': 10 u L L' = 1.1e-15 L L', against 1e-13. Where the motion was cut,
+//! differences are off by e = 2 · [`MIDPOINT`](super::star::MIDPOINT) · X (page `motion`), which changes a product by
+//! at most L e + L' e + e² in each of two terms: 2 e (L + L' + e) more. Along a direction: n = 3 for a dot product of
+//! differences from one point, one for the gap: 8 u L S, and e S for the corners.
 
 use glam::DVec2;
 
 use super::{
-    motion::{HALVINGS, halved},
-    star::ROUNDING,
+    motion::{SUBDIVISION_DEPTH, subdivided},
+    star::Rounding,
 };
 
-/// A segment's ends at both ends of a motion. A state is a motion that leads nowhere.
+/// A segment's ends at both ends of a motion. A state is a motion whose two ends are the same.
 pub(super) type Moving = [[DVec2; 2]; 2];
 
-/// Whether two moving segments are proven to have nothing in common but the end they share, all the way. Never wrongly
-/// true. Ids are equal where ends are the same point.
+/// Whether two moving segments are proven to have nothing in common but the end they share, at every instant. Never
+/// wrongly true. Ids are equal where ends are the same point.
 pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 2], t_ids: [u32; 2]) -> bool {
+    stay_apart_with(Rounding::PROVEN, s, t, s_ids, t_ids)
+}
+
+/// As [`stay_apart`], with rounding bounds.
+fn stay_apart_with(rounding: Rounding, s: &Moving, t: &Moving, s_ids: [u32; 2], t_ids: [u32; 2]) -> bool {
     let (mut shared, mut count) = ((0, 0), 0);
     for (i, id) in s_ids.iter().enumerate() {
         if let Some(j) = t_ids.iter().position(|other| other == id) {
@@ -31,16 +43,25 @@ pub(super) fn stay_apart(s: &Moving, t: &Moving, s_ids: [u32; 2], t_ids: [u32; 2
     }
     let (i, j) = shared;
     match count {
-        0 => halved(s, t, HALVINGS, &|s, t| is_beside(s, t) || is_beside(t, s) || is_before(s, t)),
-        1 => halved(s, t, HALVINGS, &|s, t| {
-            let (u, v) = (s.map(|p| p[1 - i] - p[i]), t.map(|p| p[1 - j] - p[j]));
-            let cross = coefficients(u, v, DVec2::perp_dot);
-            is_positive(cross, u, v) || is_positive(cross.map(|c| -c), u, v) || {
-                is_positive(coefficients(u, v, |u, v| -u.dot(v)), u, v)
-            }
-        }),
+        0 => subdivided(s, t, SUBDIVISION_DEPTH, &|s, t| are_apart(rounding, s, t)),
+        1 => subdivided(s, t, SUBDIVISION_DEPTH, &|s, t| are_apart_around(rounding, s, t, (i, j))),
         _ => false,
     }
+}
+
+/// Whether two segments without a common end are set apart by one of their lines or by a fixed direction.
+pub(super) fn are_apart(rounding: Rounding, s: &Moving, t: &Moving) -> bool {
+    is_beside(rounding, s, t) || is_beside(rounding, t, s) || is_before(rounding, s, t)
+}
+
+/// Whether two segments from a common end, the i-th of one and the j-th of the other, do not come to run along each
+/// other.
+pub(super) fn are_apart_around(rounding: Rounding, s: &Moving, t: &Moving, (i, j): (usize, usize)) -> bool {
+    let (u, v) = (s.map(|p| p[1 - i] - p[i]), t.map(|p| p[1 - j] - p[j]));
+    let misplaced = misplaced(rounding, s, t);
+    let is_positive = |c: [f64; 3]| is_positive(rounding.product, misplaced, c, u, v);
+    let cross = coefficients(u, v, DVec2::perp_dot);
+    is_positive(cross) || is_positive(cross.map(|c| -c)) || is_positive(coefficients(u, v, |u, v| -u.dot(v)))
 }
 
 /// Bernstein coefficients of a product of two vectors that change from the first to the second.
@@ -48,30 +69,40 @@ fn coefficients(u: [DVec2; 2], v: [DVec2; 2], product: impl Fn(DVec2, DVec2) -> 
     [product(u[0], v[0]), 0.5 * (product(u[0], v[1]) + product(u[1], v[0])), product(u[1], v[1])]
 }
 
+/// Bounds how far off the difference of two corners is at an instant that a motion was cut at.
+fn misplaced(rounding: Rounding, s: &Moving, t: &Moving) -> f64 {
+    let furthest = s.iter().chain(t).flatten().fold(DVec2::ZERO, |m, p| m.max(p.abs())).max_element();
+    2.0 * rounding.midpoint * furthest
+}
+
 /// Whether such coefficients are positive beyond all rounding.
-fn is_positive(coefficients: [f64; 3], u: [DVec2; 2], v: [DVec2; 2]) -> bool {
+fn is_positive(rounding: f64, misplaced: f64, coefficients: [f64; 3], u: [DVec2; 2], v: [DVec2; 2]) -> bool {
     let largest = |v: [DVec2; 2]| v[0].abs().max(v[1].abs()).max_element();
-    let bound = ROUNDING * largest(u) * largest(v);
+    let (of_u, of_v) = (largest(u), largest(v));
+    let bound = rounding * of_u * of_v + 2.0 * misplaced * (of_u + of_v + misplaced);
     coefficients.iter().all(|&c| c > bound)
 }
 
 /// Whether all of t lies strictly on one side of the line of s.
-fn is_beside(s: &Moving, t: &Moving) -> bool {
+fn is_beside(rounding: Rounding, s: &Moving, t: &Moving) -> bool {
+    let misplaced = misplaced(rounding, s, t);
     let along = s.map(|[a, b]| b - a);
     let to = |k: usize| [t[0][k] - s[0][0], t[1][k] - s[1][0]];
     let sides = [0, 1].map(|k| coefficients(along, to(k), DVec2::perp_dot));
-    let is_on = |sign: f64| (0..2).all(|k| is_positive(sides[k].map(|c| sign * c), along, to(k)));
+    let is_on =
+        |sign: f64| (0..2).all(|k| is_positive(rounding.product, misplaced, sides[k].map(|c| sign * c), along, to(k)));
     is_on(1.0) || is_on(-1.0)
 }
 
 /// Whether all of s lies strictly before all of t along the line between their middles.
-fn is_before(s: &Moving, t: &Moving) -> bool {
+fn is_before(rounding: Rounding, s: &Moving, t: &Moving) -> bool {
+    let misplaced = misplaced(rounding, s, t);
     let origin = s[0][0];
     let [s, t] = [s, t].map(|p| p.map(|p| p.map(|p| p - origin)));
     let sum = |p: &Moving| p[0][0] + p[0][1] + p[1][0] + p[1][1];
     let direction = sum(&t) - sum(&s);
     let largest = s.iter().chain(&t).flatten().fold(DVec2::ZERO, |m, p| m.max(p.abs())).max_element();
-    let bound = ROUNDING * largest * direction.abs().element_sum();
+    let bound = (rounding.product * largest + misplaced) * direction.abs().element_sum();
     let along = |p: DVec2| p.dot(direction);
     let gap = |end: usize| along(t[end][0]).min(along(t[end][1])) - along(s[end][0]).max(along(s[end][1]));
     gap(0) > bound && gap(1) > bound

@@ -26,8 +26,8 @@ pub struct Shell {
     inherited_corners: Vec<(u32, u32)>,
     /// `[triangles]` piece of surface that hangs together; empty for the skin.
     piece: Vec<u32>,
-    /// Pairs of pieces that crossed at rest, both ways, sorted: an eye in its socket, a spout stuck into a pot. They stay
-    /// stuck into each other, and their crossing may slide far.
+    /// Pairs of pieces that crossed at rest, both ways, sorted: an eye in its socket, a spout stuck into a pot. They
+    /// stay stuck into each other, and their crossing may slide far.
     inherited_pieces: Vec<(u32, u32)>,
     /// Triangles of a flat surface, by its vertices: they must stay positively oriented. Empty in space.
     flat_elements: Vec<[u32; 3]>,
@@ -182,8 +182,9 @@ impl Shell {
         }
     }
 
-    /// Adds the nodes of pairs among `near` that are not proven to stay apart on the straight way between two states, and of
-    /// flat elements that are not proven to stay positive: of those that have a node in `moved` if given.
+    /// Adds the nodes of pairs among `near` that are not proven to stay apart during the straight motion between two
+    /// states, and of flat elements that are not proven to stay positive: of those that have a node in `moved` if
+    /// given.
     pub(crate) fn mark_unproven(
         &self,
         near: &[(u32, u32)],
@@ -198,8 +199,8 @@ impl Shell {
         }
         let ends = [self.positions(from), self.positions(to)];
         let concerns = |t: &[u32; 3]| moved.as_ref().is_none_or(|moved| t.iter().any(|&v| moved[v as usize]));
-        let doubtful = self.doubtful_corners(again, [&ends[0], &ends[1]], concerns);
-        marked.extend(doubtful.into_iter().flat_map(|v| self.nodes_of(v)));
+        let unproven = self.unproven_corners(again, [&ends[0], &ends[1]], concerns);
+        marked.extend(unproven.into_iter().flat_map(|v| self.nodes_of(v)));
     }
 
     /// `[vertices]` whether one of the nodes that carry each has moved.
@@ -229,8 +230,8 @@ impl Shell {
         pairs
     }
 
-    /// The same of the rest state, for the `[nodes]` rest positions: of a surface in space that was bound there are none by
-    /// definition, since all that [`boundary`](Self::boundary) found to cross there is inherited.
+    /// The same of the rest state, for the `[nodes]` rest positions: of a surface in space that was bound there are
+    /// none by definition, since all that [`boundary`](Self::boundary) found to cross there is inherited.
     pub(crate) fn crossings_at_rest(&self, rest: &[Vec3A]) -> Vec<(u32, u32)> {
         let was_searched = self.binding.is_some() && self.flat_elements.is_empty();
         if was_searched { Vec::new() } else { self.crossings(rest) }
@@ -242,20 +243,21 @@ impl Shell {
     }
 
     /// Makes a flat surface follow the complex's own elements where it is not proven to keep from turning over and from
-    /// crossing itself on the straight way between two states, although they are: four-point rules overshoot where sizes
-    /// change abruptly. A state is a way that leads nowhere. Returns the vertices that follow otherwise now.
+    /// crossing itself during the straight motion between two states, although they are: four-point rules overshoot
+    /// where sizes change abruptly. For a single state, both ends are the same. Returns the vertices that follow
+    /// otherwise now.
     pub fn straighten(&mut self, [from, to]: [&[Vec3A]; 2]) -> Vec<u32> {
         if self.flat_elements.is_empty() {
             return Vec::new();
         }
         let ends = [from, to].map(|nodes| self.positions(nodes).into_owned());
         let ends = [&*ends[0], &*ends[1]];
-        let doubtful = self.doubtful_corners(self.surface.near_pairs(ends[0], ends[1], 0.0), ends, |_| true);
-        self.binding.as_mut().map_or_else(Vec::new, |binding| Arc::make_mut(binding).straighten(doubtful.into_iter()))
+        let unproven = self.unproven_corners(self.surface.near_pairs(ends[0], ends[1], 0.0), ends, |_| true);
+        self.binding.as_mut().map_or_else(Vec::new, |binding| Arc::make_mut(binding).straighten(unproven.into_iter()))
     }
 
-    /// Whether a flat surface is proven to stay as it should be on the straight way between two states, as far as the
-    /// vertices in `changed` are concerned. True for others.
+    /// Whether a flat surface is proven to stay as it should be during the straight motion between two states, as far
+    /// as the vertices in `changed` are concerned. True for others.
     pub fn stays_sound(&self, changed: &[bool], [from, to]: [&[Vec3A]; 2]) -> bool {
         if self.flat_elements.is_empty() {
             return true;
@@ -264,23 +266,23 @@ impl Shell {
         let ends = [&*ends[0], &*ends[1]];
         let concerns = |t: &[u32; 3]| t.iter().any(|&v| changed[v as usize]);
         let near = self.touched(&self.surface.near_pairs(ends[0], ends[1], 0.0), Some(changed));
-        self.doubtful_corners(near, ends, concerns).is_empty()
+        self.unproven_corners(near, ends, concerns).is_empty()
     }
 
-    /// Corners of what is not proven to stay as it should be on a straight way of the vertices: of flat elements that
-    /// `concerns` says yes to, which must stay positive, and of `pairs`, which must stay apart.
-    fn doubtful_corners(
+    /// Corners of what is not proven to stay as it should be during a straight motion of the vertices: of flat elements
+    /// that `concerns` says yes to, which must stay positive, and of `pairs`, which must stay apart.
+    fn unproven_corners(
         &self,
         pairs: Vec<(u32, u32)>,
         ends: [&[Vec3A]; 2],
         concerns: impl Fn(&[u32; 3]) -> bool + Sync,
     ) -> Vec<u32> {
-        let is_doubtful = |t: &&[u32; 3]| concerns(t) && !stays_positive(t, ends);
-        let elements = self.flat_elements.par_iter().with_min_len(2048).filter(is_doubtful);
+        let is_unproven = |t: &&[u32; 3]| concerns(t) && !stays_positive(t, ends);
+        let elements = self.flat_elements.par_iter().with_min_len(2048).filter(is_unproven);
         let mut corners: Vec<u32> = elements.flatten_iter().copied().collect();
         let corners_of = |s: u32| &self.surface.triangles[s as usize];
-        let doubtful = self.surface.doubtful_of(pairs, ends);
-        for (s, t) in doubtful.into_iter().filter(|&pair| !self.is_inherited(pair)) {
+        let unproven = self.surface.unproven_of(pairs, ends);
+        for (s, t) in unproven.into_iter().filter(|&pair| !self.is_inherited(pair)) {
             corners.extend(corners_of(s).iter().chain(corners_of(t)));
         }
         corners
@@ -301,11 +303,11 @@ impl Shell {
     }
 
     /// The same for the state at the end of a straight motion of this surface's vertices, and whether it is proven that
-    /// there are none at any instant of the way.
+    /// there are none at any instant of the motion.
     fn crossings_after(&self, [start, end]: [&[Vec3A]; 2]) -> (Vec<(u32, u32)>, bool) {
-        let mut doubtful = self.surface.doubtful_pairs(start, end);
-        doubtful.retain(|&pair| !self.is_inherited(pair));
-        (self.surface.crossing_pairs(&doubtful, end), doubtful.is_empty())
+        let mut unproven = self.surface.unproven_pairs(start, end);
+        unproven.retain(|&pair| !self.is_inherited(pair));
+        (self.surface.crossing_pairs(&unproven, end), unproven.is_empty())
     }
 
     /// The nodes that carry triangle `t`: where a crossing is.
@@ -314,15 +316,15 @@ impl Shell {
     }
 }
 
-/// A state with the surface it carries: the end of one way is the beginning of the next.
+/// A state with the surface it carries: the end of one motion is the beginning of the next.
 #[derive(Debug)]
-pub struct Placed {
+pub struct CarriedState {
     nodes: Vec<Vec3A>,
     /// Vertices of the written surface, where there is one.
     written: Option<Vec<Vec3A>>,
 }
 
-impl Placed {
+impl CarriedState {
     /// Places the vertices of all surfaces.
     pub fn new<'a>(surfaces: impl Into<Checked<'a>>, nodes: Vec<Vec3A>) -> Self {
         let written = surfaces.into().written.map(|written| written.positions(&nodes).into_owned());
@@ -344,7 +346,7 @@ impl Placed {
         self.written.as_deref().unwrap_or(&self.nodes)
     }
 
-    /// Whether the triangles of a flat surface are proven to stay positive on the straight way here.
+    /// Whether the triangles of a flat surface are proven to stay positive during the straight motion here.
     pub(crate) fn stays_unfolded_from(&self, from: &Self, surfaces: Checked) -> bool {
         surfaces.written.is_none_or(|written| {
             let ends = [from.written(), self.written()];
@@ -352,8 +354,8 @@ impl Placed {
         })
     }
 
-    /// By surface: crossings of this state that were not there at rest, and whether it is proven that there are none at any
-    /// instant of the straight way to it.
+    /// By surface: crossings of this state that were not there at rest, and whether it is proven that there are none at
+    /// any instant of the straight motion to it.
     pub(crate) fn crossings_from(&self, from: &Self, surfaces: Checked) -> BySurface<(Vec<(u32, u32)>, bool)> {
         let (skin, written) = rayon::join(
             || surfaces.skin.crossings_after([&from.nodes, &self.nodes]),
@@ -363,7 +365,7 @@ impl Placed {
     }
 }
 
-/// Whether a flat triangle is proven to stay positive on the straight way of the vertices.
+/// Whether a flat triangle is proven to stay positive during the straight motion of the vertices.
 fn stays_positive(triangle: &[u32; 3], ends: [&[Vec3A]; 2]) -> bool {
     flat_stays_positive(ends.map(|at| triangle.map(|v| at[v as usize])))
 }

@@ -2,13 +2,28 @@
 //!
 //! # Theory
 //! Let the triangles around a vertex form one closed fan. If all of them are positively oriented seen along one
-//! direction, and the fan goes around once, the star is seen without overlap, so no two of its triangles meet but in what
-//! they share. Where corners move along straight lines, `n(τ) = u(τ) × v(τ)` is quadratic in τ, and positive along a
-//! direction all the way if its three Bernstein coefficients are; the fan then goes around as often as at the start.
+//! direction, and the fan goes around once, the star is seen without overlap, so no two of its triangles meet but in
+//! what they share. Where corners move along straight lines, `n(τ) = u(τ) × v(τ)` is quadratic in τ, and positive along
+//! a direction at every instant if its three Bernstein coefficients `u × v`, `(u × v' + u' × v) / 2`, `u' × v'` are;
+//! the fan then goes around as often as at the start, since the ring cannot pass over the vertex.
+//!
+//! # Rounding
+//! - *`n · d`*: each of the products goes through 2 differences, the product, the difference and the sum of two, and
+//!   the product and two sums with d: n = 8. Let M be the largest component of the edges and S the sum of the
+//!   components of d. A component of n is a sum of products of at most 2 M²: error ≤ 16 u M² S. In double precision
+//!   1.8e-15, against [`ROUNDING`]; in single precision 9.5e-7, against [`SINGLE_ROUNDING`]. The components of a unit
+//!   vector sum up to √3, of a rounded one to less than [`SUM_OF_UNIT`].
+//! - *Where a motion is cut*, edges are off by e = 2 · [`MIDPOINT`] · X (page `motion`), X the largest coordinate. A
+//!   product of two changes by at most 2 M e + e², n by twice that in each component: 2 e (2 M + e) S more.
+//! - *The plane that the turns are counted at*, across a = d × c with c = (0.618…, 0.755…, 0.219…): a is rounded by 2 u
+//!   in each product, which moves a · w by at most 2 u · 1.374 S M = 4.8 u M (1.374 is the sum of the two largest
+//!   components of c, S ≤ 1.74); evaluating it on a difference has n = 4, on terms of at most 1.374 S M: 9.6 u M. In
+//!   all 14.4 u M = 8.6e-7 M, against 1.8 · 6e-6 M.
 //!
 //! # Practice
 //! Most pairs of triangles with near boxes are neighbours, and nearly all stars are proven with a dozen products each.
 //! What is not proven is left to the exact predicates: a star never says that something crosses. So f32 is enough here.
+//! Where normals leave the range of f32 their sum has no direction, and nothing is proven.
 
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
@@ -16,9 +31,27 @@ use rayon::prelude::*;
 /// Stars per parallel task.
 const STARS_PER_TASK: usize = 512;
 
-/// Bounds the rounding of a product of three differences of coordinates, relative to the product of their largest
-/// components: some thirty roundings of 2⁻⁵³ each, and room.
+/// Bounds the rounding of products of up to three differences of coordinates, relative to the product of their largest
+/// components: 2.8e-14 at most, for volumes that were cut (pages `elements`, `motion`, `star` and `segments` count),
+/// and room.
 pub(super) const ROUNDING: f64 = 1.0e-13;
+
+/// Bounds how far off a coordinate is at an instant that a motion was cut at, relative to itself: 10.1 roundings of
+/// 2⁻⁵³ (page `motion`), and room.
+pub(super) const MIDPOINT: f64 = 12.0 * 0.5 * f64::EPSILON;
+
+/// The bounds of a proof in double precision; tests lower them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rounding {
+    /// As [`ROUNDING`].
+    pub product: f64,
+    /// As [`MIDPOINT`].
+    pub midpoint: f64,
+}
+
+impl Rounding {
+    pub const PROVEN: Self = Self { product: ROUNDING, midpoint: MIDPOINT };
+}
 
 /// Closed fans of a surface, by vertex identity.
 #[derive(Debug, Clone)]
@@ -59,8 +92,19 @@ impl Stars {
         Self { start, corners }
     }
 
-    /// `[identities]` stars whose triangles are proven not to cross each other, at one state or all the way between two.
+    /// `[identities]` stars whose triangles are proven not to cross each other, in one state or at every instant
+    /// between two.
     pub fn proven<const ENDS: usize>(&self, triangles: &[[u32; 3]], ends: [&[Vec3A]; ENDS]) -> Vec<bool> {
+        self.proven_with(SINGLE_ROUNDING, triangles, ends)
+    }
+
+    /// As [`proven`](Self::proven), with a rounding bound.
+    pub fn proven_with<const ENDS: usize>(
+        &self,
+        rounding: f32,
+        triangles: &[[u32; 3]],
+        ends: [&[Vec3A]; ENDS],
+    ) -> Vec<bool> {
         let normals: Vec<Facing> = triangles
             .par_iter()
             .with_min_len(STARS_PER_TASK)
@@ -71,7 +115,7 @@ impl Stars {
             .with_min_len(STARS_PER_TASK)
             .map(|v| {
                 let fan = &self.corners[self.start[v] as usize..self.start[v + 1] as usize];
-                !fan.is_empty() && is_seen_whole(fan, triangles, &normals, ends[0])
+                !fan.is_empty() && is_seen_whole(rounding, fan, triangles, &normals, ends[0])
             })
             .collect()
     }
@@ -104,42 +148,45 @@ fn is_closed_fan(identities: &[[u32; 3]], around: &[(u32, u8)]) -> bool {
 #[derive(Clone, Copy)]
 pub(super) struct Normals {
     pub coefficients: [DVec3; 3],
-    /// Largest component of the edges: bounds the rounding.
-    largest: f64,
+    /// Bounds the error of `coefficients · d`, per sum of the components of d.
+    error: f64,
 }
 
 impl Normals {
     #[inline]
-    pub fn of<const ENDS: usize>(ends: [[DVec3; 3]; ENDS]) -> Self {
+    pub fn of(ends: [[DVec3; 3]; 2], rounding: Rounding) -> Self {
+        let largest = |v: DVec3, m: DVec3| m.max(v.abs());
         let edges = ends.map(|[a, b, c]| [b - a, c - a]);
-        let largest = edges.iter().flatten().fold(DVec3::ZERO, |m, e| m.max(e.abs())).max_element();
-        let [[u, v], [x, y]] = [edges[0], edges[ENDS - 1]];
-        let start = u.cross(v);
-        let coefficients = if ENDS == 1 { [start; 3] } else { [start, 0.5 * (u.cross(y) + x.cross(v)), x.cross(y)] };
-        Self { coefficients, largest }
+        let longest = edges.iter().flatten().fold(DVec3::ZERO, |m, e| largest(*e, m)).max_element();
+        let furthest = ends.iter().flatten().fold(DVec3::ZERO, |m, p| largest(*p, m)).max_element();
+        let [[u, v], [x, y]] = edges;
+        let coefficients = [u.cross(v), 0.5 * (u.cross(y) + x.cross(v)), x.cross(y)];
+        let misplaced = 2.0 * rounding.midpoint * furthest;
+        let error = rounding.product * longest * longest + 2.0 * misplaced * (2.0 * longest + misplaced);
+        Self { coefficients, error }
     }
 
-    /// Whether the triangle is positively oriented along a direction all the way; never wrongly true.
+    /// Whether the triangle is positively oriented along a direction at every instant; never wrongly true.
     #[inline]
     pub fn are_along(&self, direction: DVec3) -> bool {
-        let bound = ROUNDING * self.largest * self.largest * direction.abs().element_sum();
+        let bound = self.error * direction.abs().element_sum();
         self.coefficients.iter().all(|n| n.dot(direction) > bound)
     }
 }
 
 /// The same as [`Normals`] in f32.
 #[derive(Clone, Copy)]
-struct Facing {
+pub(super) struct Facing {
     coefficients: [Vec3A; 3],
     largest: f32,
 }
 
-/// As [`ROUNDING`], of roundings of 2⁻²⁴.
+/// The same in single precision: 9.5e-7 at most, for normals, and room.
 pub(super) const SINGLE_ROUNDING: f32 = 6.0e-6;
 
 impl Facing {
     #[inline]
-    fn of<const ENDS: usize>(ends: [[Vec3A; 3]; ENDS]) -> Self {
+    pub fn of<const ENDS: usize>(ends: [[Vec3A; 3]; ENDS]) -> Self {
         let edges = ends.map(|[a, b, c]| [b - a, c - a]);
         let largest = edges.iter().flatten().fold(Vec3A::ZERO, |m, e| m.max(e.abs())).max_element();
         let [[u, v], [x, y]] = [edges[0], edges[ENDS - 1]];
@@ -152,22 +199,38 @@ impl Facing {
         self.coefficients[0] + self.coefficients[1] + self.coefficients[2]
     }
 
-    /// Whether the triangle is positively oriented along a unit vector all the way; never wrongly true. Where products
-    /// leave the range of f32, it is not proven.
+    /// Whether the triangle is positively oriented along a unit vector at every instant; never wrongly true. Where
+    /// products leave the range of f32, it is not proven.
     #[inline]
-    fn is_along(&self, direction: Vec3A) -> bool {
-        let bound = SINGLE_ROUNDING * self.largest * self.largest * SUM_OF_UNIT;
-        bound > f32::MIN_POSITIVE && self.coefficients.iter().all(|n| n.dot(direction) > bound)
+    pub fn is_along(&self, rounding: f32, direction: Vec3A) -> bool {
+        let bound = rounding * self.largest * self.largest * SUM_OF_UNIT;
+        is_in_range(bound) && self.coefficients.iter().all(|n| n.dot(direction) > bound)
     }
 }
+
+/// Whether a bound of rounding in f32 is large enough to hold what is lost below the range of f32 as well, and small
+/// enough that nothing it bounds has left that range above.
+#[inline]
+pub(super) fn is_in_range(bound: f32) -> bool {
+    bound > f32::MIN_POSITIVE && bound < LARGEST_BOUND
+}
+
+/// Products that are bounded by a hundred thousand times this stay finite.
+const LARGEST_BOUND: f32 = 1.0e30;
 
 /// The components of a unit vector sum up to at most this, and room.
 const SUM_OF_UNIT: f32 = 1.8;
 
 /// Whether a closed fan is seen without overlap along the sum of its normals. Never wrongly true.
-fn is_seen_whole(fan: &[(u32, u8)], triangles: &[[u32; 3]], normals: &[Facing], start: &[Vec3A]) -> bool {
+fn is_seen_whole(
+    rounding: f32,
+    fan: &[(u32, u8)],
+    triangles: &[[u32; 3]],
+    normals: &[Facing],
+    start: &[Vec3A],
+) -> bool {
     let direction = fan.iter().map(|&(t, _)| normals[t as usize].sum()).sum::<Vec3A>().normalize_or_zero();
-    if !fan.iter().all(|&(t, _)| normals[t as usize].is_along(direction)) {
+    if !fan.iter().all(|&(t, _)| normals[t as usize].is_along(rounding, direction)) {
         return false;
     }
     // Every triangle turns the same way by less than half a turn, so each time around passes once from behind a plane to
@@ -177,7 +240,7 @@ fn is_seen_whole(fan: &[(u32, u8)], triangles: &[[u32; 3]], normals: &[Facing], 
     for &(t, k) in fan {
         let k = usize::from(k);
         let at = triangles[t as usize].map(|v| start[v as usize]);
-        let bound = SINGLE_ROUNDING * normals[t as usize].largest * SUM_OF_UNIT;
+        let bound = rounding * normals[t as usize].largest * SUM_OF_UNIT;
         let [a, b] = [1, 2].map(|step| across.dot(at[(k + step) % 3] - at[k]));
         if a.abs() <= bound || b.abs() <= bound {
             return false;
@@ -192,8 +255,8 @@ mod tests {
     use super::*;
     use crate::certificate::Surface;
 
-    /// A fan of `count` triangles around the origin that goes around `turns` times, its ring climbing with the angle but
-    /// for the last step, which leads back.
+    /// A fan of `count` triangles around the origin that goes around `turns` times, its ring climbing with the angle
+    /// but for the last step, which leads back.
     fn fan(count: u32, turns: f32) -> (Vec<[u32; 3]>, Vec<Vec3A>) {
         let ring = (0..count).map(|k| {
             let part = k as f32 / count as f32;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::voxel::Dimension;
 
 use super::{
-    motion::{HALVINGS, Moving, lie_apart, stay_apart},
+    motion::{Moving, SUBDIVISION_DEPTH, lie_apart, stay_apart},
     predicates::{Triangle, segments_cross, triangles_cross},
     segments,
     star::Stars,
@@ -18,23 +18,33 @@ const PAIRS_PER_TASK: usize = 1024;
 
 /// A triangle with its plane, for proving others apart from it.
 #[derive(Debug, Clone, Copy)]
-struct Plane {
+pub(super) struct Plane {
     at: [Vec3A; 3],
     /// `(b − a) × (c − a)`.
     normal: DVec3,
-    /// Bounds the rounding of `normal · (p − a)`, per largest coordinate of `p − a`: the same 1e-14 of the permanent as
-    /// in [`orientation`](super::orientation), with room for the two forms' different order of sums.
+    /// Bounds the rounding of `normal · (p − a)`, per largest coordinate of `p − a`.
     error: f64,
 }
+
+/// Bounds the rounding of `normal · (p − a)`, relative to the permanent of the normal (the sum of the sizes of its
+/// products) and the largest coordinate of `p − a`: 2 differences, product and difference of the normal, the difference
+/// `p − a`, a product and two sums are n = 8 roundings of each term, 8.9e-16.
+pub(super) const PLANE_ROUNDING: f64 = 1.0e-14;
 
 impl Plane {
     #[inline]
     fn of(at: [Vec3A; 3]) -> Self {
+        Self::with(PLANE_ROUNDING, at)
+    }
+
+    /// As [`of`](Self::of), with a rounding bound.
+    #[inline(always)]
+    pub(super) fn with(rounding: f64, at: [Vec3A; 3]) -> Self {
         let [a, b, c] = at.map(|p| p.as_dvec3());
         let (u, v) = (b - a, c - a);
         let (p, q) = (u.abs(), v.abs());
         let permanent = p.y * q.z + p.z * q.y + p.z * q.x + p.x * q.z + p.x * q.y + p.y * q.x;
-        Self { at, normal: u.cross(v), error: 1.0e-14 * permanent }
+        Self { at, normal: u.cross(v), error: rounding * permanent }
     }
 
     #[inline]
@@ -45,7 +55,7 @@ impl Plane {
 
     /// Whether all corners of `other` that are not shared lie strictly, and provably, on one side of this plane.
     #[inline]
-    fn is_apart(&self, other: &Self, own_ids: &[u32; 3], other_ids: &[u32; 3]) -> bool {
+    pub(super) fn is_apart(&self, other: &Self, own_ids: &[u32; 3], other_ids: &[u32; 3]) -> bool {
         let origin = self.at[0].as_dvec3();
         let (mut above, mut below) = (false, false);
         for (corner, id) in other.at.iter().zip(other_ids) {
@@ -75,19 +85,19 @@ pub struct Surface {
     /// `[triangles]` identities of the corners: equal where corners are the same point (welded).
     pub identities: Vec<[u32; 3]>,
     /// Triangles two by two, neighbours across an edge; those without one are there twice.
-    couples: Vec<[u32; 2]>,
-    /// Over the couples.
+    triangle_pairs: Vec<[u32; 2]>,
+    /// Over the pairs of triangles.
     tree: Tree,
     stars: Stars,
     /// `[triangles]` whether one is without area at rest: it has no side that anything could be proven to be on.
-    thin: Vec<bool>,
+    degenerate: Vec<bool>,
 }
 
 /// Triangles not wider than this part of their length, at rest, are without area: positions are rounded to f32.
-const THIN: f32 = 1.0e-5;
+const DEGENERATE: f32 = 1.0e-5;
 
-/// Where on a way pairs with a triangle without area are looked at.
-const LOOKS: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
+/// Instants of a motion at which pairs with a degenerate triangle are looked at: samples, not a proof.
+const SAMPLES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 
 impl Surface {
     /// A surface whose corners are what their indices say.
@@ -103,12 +113,12 @@ impl Surface {
 
     /// A surface with corner identities of its own (a soup whose equal points are one).
     pub fn welded(triangles: Vec<[u32; 3]>, identities: Vec<[u32; 3]>, rest: &[Vec3A]) -> Self {
-        let couples = couples(&triangles, &identities, rest);
+        let triangle_pairs = triangle_pairs(&triangles, &identities, rest);
         let centre = |t: u32| triangles[t as usize].map(|v| rest[v as usize]).iter().sum::<Vec3A>() / 3.0;
-        let centres: Vec<Vec3A> = couples.iter().map(|&[s, t]| 0.5 * (centre(s) + centre(t))).collect();
-        let thin = triangles.iter().map(|t| is_thin(t.map(|v| rest[v as usize]))).collect();
+        let centres: Vec<Vec3A> = triangle_pairs.iter().map(|&[s, t]| 0.5 * (centre(s) + centre(t))).collect();
+        let degenerate = triangles.iter().map(|t| is_degenerate(t.map(|v| rest[v as usize]))).collect();
         let (dimension, stars) = (Dimension::Three, Stars::new(&identities));
-        Self { dimension, tree: Tree::new(&centres), couples, stars, thin, triangles, identities }
+        Self { dimension, tree: Tree::new(&centres), triangle_pairs, stars, degenerate, triangles, identities }
     }
 
     /// Pairs of triangles whose boxes meet where each corner is anywhere between its places in `a` and `b`.
@@ -122,7 +132,8 @@ impl Surface {
     /// Pairs of triangles whose boxes may meet, each as (lower, higher), of those that `keep` keeps. `bounds` gives the
     /// boxes of a triangle.
     ///
-    /// It is couples that are searched for: half as many, in boxes hardly larger, so that each search saves three of four.
+    /// It is pairs of neighbours that are searched for: half as many, in boxes hardly larger, so that each search saves
+    /// three of four.
     fn pairs<const ENDS: usize>(
         &self,
         bounds: impl Fn(&[u32; 3]) -> Boxes<ENDS> + Sync,
@@ -134,23 +145,24 @@ impl Surface {
                 pairs.push((s.min(t), s.max(t)));
             }
         };
-        let within = self.couples.par_iter().with_min_len(PAIRS_PER_TASK).fold(Vec::new, |mut pairs, &[s, t]| {
-            if s != t {
-                take(s, t, &mut pairs);
-            }
-            pairs
-        });
+        let within =
+            self.triangle_pairs.par_iter().with_min_len(PAIRS_PER_TASK).fold(Vec::new, |mut pairs, &[s, t]| {
+                if s != t {
+                    take(s, t, &mut pairs);
+                }
+                pairs
+            });
         let mut pairs: Vec<(u32, u32)> = within.reduce(Vec::new, |mut a, b| {
             a.extend(b);
             a
         });
         pairs.extend(self.tree.pairs(
-            |couple| {
-                let [s, t] = self.couples[couple as usize];
+            |pair| {
+                let [s, t] = self.triangle_pairs[pair as usize];
                 union(&boxes[s as usize], &boxes[t as usize])
             },
             |a, b, pairs| {
-                let ([s, t], [u, v]) = (self.couples[a as usize], self.couples[b as usize]);
+                let ([s, t], [u, v]) = (self.triangle_pairs[a as usize], self.triangle_pairs[b as usize]);
                 take(s, u, pairs);
                 if u != v {
                     take(s, v, pairs);
@@ -167,8 +179,8 @@ impl Surface {
     }
 
     /// Pairs of triangles, each as (lower, higher), that neither their boxes nor a star around a common corner prove
-    /// apart, at one state or all the way between two.
-    fn unproven_pairs<const ENDS: usize>(&self, ends: [&[Vec3A]; ENDS]) -> Vec<(u32, u32)> {
+    /// apart, in one state or at every instant between two.
+    fn candidate_pairs<const ENDS: usize>(&self, ends: [&[Vec3A]; ENDS]) -> Vec<(u32, u32)> {
         if self.dimension == Dimension::Two {
             return self.near_pairs(ends[0], ends[ENDS - 1], 0.0);
         }
@@ -188,11 +200,11 @@ impl Surface {
         (of_a | of_b | of_c) && (is_proven(of_a, a) || is_proven(of_b, b) || is_proven(of_c, c))
     }
 
-    /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart all the way of a straight
-    /// motion of the corners. Few, where nothing crosses. Those with a triangle that is without area at rest, so that
-    /// nothing can be proven of them, are looked at in eighths of the way.
-    pub fn doubtful_pairs(&self, from: &[Vec3A], to: &[Vec3A]) -> Vec<(u32, u32)> {
-        self.doubtful_on(self.unproven_pairs([from, to]), [from, to])
+    /// Pairs of triangles, each as (lower, higher), sorted, that are not proven to stay apart at every instant of a
+    /// straight motion of the corners. Few, where nothing crosses. Those with a triangle that is without area at rest,
+    /// so that nothing can be proven of them, are looked at in eighths of the motion.
+    pub fn unproven_pairs(&self, from: &[Vec3A], to: &[Vec3A]) -> Vec<(u32, u32)> {
+        self.unproven_among(self.candidate_pairs([from, to]), [from, to])
     }
 
     fn unproven_segments(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
@@ -206,34 +218,36 @@ impl Surface {
     }
 
     /// The same of given pairs.
-    pub(crate) fn doubtful_of(&self, mut pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
+    pub(crate) fn unproven_of(&self, mut pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
         if self.dimension == Dimension::Three && pairs.len() > self.triangles.len() {
             let proven = self.stars.proven(&self.triangles, ends);
             pairs.retain(|&(s, t)| !self.are_around(&proven, s, t));
         }
-        self.doubtful_on(pairs, ends)
+        self.unproven_among(pairs, ends)
     }
 
-    fn doubtful_on(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
-        let mut left = self.not_apart(pairs, ends, HALVINGS);
+    fn unproven_among(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2]) -> Vec<(u32, u32)> {
+        let mut left = self.not_apart(pairs, ends, SUBDIVISION_DEPTH);
         if self.dimension == Dimension::Three {
-            left.retain(|&(s, t)| !(self.thin[s as usize] || self.thin[t as usize]) || self.cross_at_looks(s, t, ends));
+            left.retain(|&(s, t)| {
+                !(self.degenerate[s as usize] || self.degenerate[t as usize]) || self.cross_at_samples(s, t, ends)
+            });
         }
         left
     }
 
-    /// Whether two triangles cross in some eighth of a way.
-    fn cross_at_looks(&self, s: u32, t: u32, [from, to]: [&[Vec3A]; 2]) -> bool {
+    /// Whether two triangles cross in some eighth of a motion.
+    fn cross_at_samples(&self, s: u32, t: u32, [from, to]: [&[Vec3A]; 2]) -> bool {
         let [s, t] = [s, t].map(|t| [self.triangle(t, from), self.triangle(t, to)]);
         let at = |[from, to]: &[Triangle; 2], part: f64| Triangle {
             at: [0, 1, 2].map(|k| from.at[k].lerp(to.at[k], part)),
             id: from.id,
         };
-        LOOKS.into_iter().any(|part| triangles_cross(&at(&s, part), &at(&t, part)))
+        SAMPLES.into_iter().any(|part| triangles_cross(&at(&s, part), &at(&t, part)))
     }
 
     /// Sorts pairs and leaves out those that are proven apart.
-    fn not_apart(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2], halvings: u32) -> Vec<(u32, u32)> {
+    fn not_apart(&self, pairs: Vec<(u32, u32)>, ends: [&[Vec3A]; 2], depth: u32) -> Vec<(u32, u32)> {
         if self.dimension == Dimension::Two {
             let mut left = self.unproven_segments(pairs, ends);
             left.par_sort_unstable();
@@ -255,7 +269,7 @@ impl Surface {
                         return false;
                     }
                 }
-                !stay_apart(&moving(s), &moving(t), s_ids, t_ids, halvings)
+                !stay_apart(&moving(s), &moving(t), s_ids, t_ids, depth)
             })
             .collect();
         left.par_sort_unstable();
@@ -310,8 +324,8 @@ impl Surface {
 
     /// All crossing pairs of a state, sorted, each as (lower, higher). Exact.
     pub fn crossings(&self, positions: &[Vec3A]) -> Vec<(u32, u32)> {
-        let doubtful = self.not_apart(self.unproven_pairs([positions]), [positions; 2], 0);
-        self.crossing_pairs(&doubtful, positions)
+        let unproven = self.not_apart(self.candidate_pairs([positions]), [positions; 2], 0);
+        self.crossing_pairs(&unproven, positions)
     }
 
     /// The same by comparing every pair, for tests and for whoever does not trust the tree.
@@ -328,14 +342,14 @@ impl Surface {
     }
 }
 
-fn is_thin([a, b, c]: [Vec3A; 3]) -> bool {
+fn is_degenerate([a, b, c]: [Vec3A; 3]) -> bool {
     let [a, b, c] = [b - a, c - b, a - c].map(|e| e.as_dvec3());
     let longest = a.length_squared().max(b.length_squared()).max(c.length_squared());
-    a.cross(b).length() <= f64::from(THIN) * longest
+    a.cross(b).length() <= f64::from(DEGENERATE) * longest
 }
 
 /// Triangles two by two, across edges that are the longest of both; those without such a neighbour are there twice.
-fn couples(triangles: &[[u32; 3]], identities: &[[u32; 3]], rest: &[Vec3A]) -> Vec<[u32; 2]> {
+fn triangle_pairs(triangles: &[[u32; 3]], identities: &[[u32; 3]], rest: &[Vec3A]) -> Vec<[u32; 2]> {
     let longest = |t: usize| {
         let at = triangles[t].map(|v| rest[v as usize]);
         let length = |k: &usize| at[*k].distance_squared(at[(k + 1) % 3]);

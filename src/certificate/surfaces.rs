@@ -60,8 +60,8 @@ impl Surfaces {
     }
 
     /// As [`Shell::straighten`] of the written surface.
-    pub fn straighten(&mut self, way: [&[Vec3A]; 2]) -> Vec<u32> {
-        self.written.as_mut().map_or_else(Vec::new, |written| written.straighten(way))
+    pub fn straighten(&mut self, motion: [&[Vec3A]; 2]) -> Vec<u32> {
+        self.written.as_mut().map_or_else(Vec::new, |written| written.straighten(motion))
     }
 }
 

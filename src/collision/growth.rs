@@ -1,8 +1,8 @@
 //! Growth: which λ comes next, and when a state counts as settled.
 //!
-//! Where nothing is in the way, growth leaps from keyframe to keyframe: it starts from where the last two keyframes point,
-//! a few iterations follow that nobody guards, and the certificate of the whole way decides. Where that is refused, the
-//! same stretch is walked in small guarded steps.
+//! Where nothing is in the way, growth goes in one extrapolated step from keyframe to keyframe: it starts from where
+//! the last two keyframes point, a few iterations follow that nobody guards, and the certificate of the whole motion
+//! decides. Where that is refused, the same stretch is walked in small guarded steps.
 
 use crate::voxel::Dimension;
 
@@ -16,11 +16,11 @@ pub const LEAST_STEPS: usize = 20;
 /// Iterations at each λ below 1: on the way, and where the state becomes a keyframe.
 const ITERATIONS_PER_STEP: [u32; 2] = [2, 4];
 
-/// Iterations of a leap to a keyframe.
-const ITERATIONS_PER_LEAP: u32 = 2;
+/// Iterations of an extrapolated step to a keyframe.
+const ITERATIONS_PER_EXTRAPOLATION: u32 = 2;
 
-/// A leap takes at most this much relative size change at once, as `ln` of the largest factor.
-const LN_SIZE_PER_LEAP: f32 = 0.4;
+/// An extrapolated step takes at most this much relative size change at once, as `ln` of the largest factor.
+const LN_SIZE_PER_EXTRAPOLATION: f32 = 0.4;
 
 /// Iterations at λ = 1 at most.
 const SETTLING_ITERATIONS: u32 = 80;
@@ -32,8 +32,8 @@ const HURRIED_ITERATIONS: u32 = 40;
 /// Iterations at λ = 1 at least.
 const LEAST_SETTLING: u32 = 8;
 
-/// The same at the end of a leap, which starts nearer: at least and at most.
-const LEAP_SETTLING: [u32; 2] = [4, 8];
+/// The same at the end of an extrapolated step, which starts nearer: at least and at most.
+const EXTRAPOLATED_SETTLING: [u32; 2] = [4, 8];
 
 /// At λ = 1 the state is settled when no node moves further than this in an iteration, in cells.
 const SETTLED_MOTION: f32 = 0.02;
@@ -52,8 +52,8 @@ struct Pace {
 /// In space.
 const BODY: Pace = Pace { steps: LEAST_STEPS, ln_size: LN_SIZE_PER_STEP, iterations: ITERATIONS_PER_STEP };
 
-/// In the plane, where large parts flow far at every λ: in steps half as long, each brought nearer to rest. A population
-/// cartogram locked in folded cells at the pace of bodies.
+/// In the plane, where large parts flow far at every λ: in steps half as long, each brought nearer to rest. A
+/// population cartogram locked in folded cells at the pace of bodies.
 const PICTURE: Pace = Pace { steps: 48, ln_size: 0.06, iterations: [4, 6] };
 
 /// Where the growth is.
@@ -73,8 +73,8 @@ pub struct Growth {
     range: [f32; 2],
     /// The first step after the last keyframe.
     stretch: usize,
-    /// Whether the present step is a leap over the stretch to its keyframe.
-    leaps: bool,
+    /// Whether the present step is extrapolated over the stretch to its keyframe.
+    is_extrapolated: bool,
     /// Whether nothing was held back since the last keyframe.
     free: bool,
 }
@@ -117,22 +117,22 @@ impl Growth {
             patience: SETTLING_ITERATIONS,
             range: [low, high],
             stretch: 0,
-            leaps: false,
+            is_extrapolated: false,
             free: true,
         };
         growth.begin_stretch();
         growth
     }
 
-    /// Begins the way to the next keyframe with a leap, if nothing was in the way to the last one.
+    /// Begins the way to the next keyframe with an extrapolated step, if nothing was in the way to the last one.
     fn begin_stretch(&mut self) {
         self.stretch = self.step;
         let key = (self.step..self.steps.len()).find(|&k| self.is_key_step(k)).unwrap_or(self.step);
-        self.leaps = self.free
+        self.is_extrapolated = self.free
             && key < self.steps.len()
-            && ln_change(self.range, self.last_key(), self.steps[key]) <= LN_SIZE_PER_LEAP;
+            && ln_change(self.range, self.last_key(), self.steps[key]) <= LN_SIZE_PER_EXTRAPOLATION;
         self.free = true;
-        if self.leaps {
+        if self.is_extrapolated {
             self.step = key;
         }
     }
@@ -142,14 +142,14 @@ impl Growth {
         self.stretch.checked_sub(1).map_or(0.0, |k| self.steps[k])
     }
 
-    /// Whether the present step is a leap from the last keyframe to the next.
-    pub fn leaps(&self) -> bool {
-        self.leaps
+    /// Whether the present step is extrapolated from the last keyframe to the next.
+    pub fn is_extrapolated(&self) -> bool {
+        self.is_extrapolated
     }
 
-    /// Gives a leap up: the same stretch again, in small steps.
+    /// Gives an extrapolated step up: the same stretch again, in small steps.
     pub fn walk(&mut self) {
-        self.leaps = false;
+        self.is_extrapolated = false;
         self.free = false;
         self.step = self.stretch;
         self.iteration = 0;
@@ -157,12 +157,12 @@ impl Growth {
     }
 
     /// Notes that something was held back: the next stretch is walked as well.
-    pub fn held_back(&mut self) {
+    pub fn backtracked(&mut self) {
         self.free = false;
     }
 
-    /// Plans the growth to `[cells]` sizes. In the plane it walks: large parts flow far, and the correction of areas wants a
-    /// settled state.
+    /// Plans the growth to `[cells]` sizes. In the plane it walks: large parts flow far, and the correction of areas
+    /// wants a settled state.
     pub fn of(dimension: Dimension, keys: usize, importance: &[f32]) -> Self {
         let (low, high) = importance.iter().fold((1.0_f32, 1.0_f32), |(l, h), &f| (l.min(f), h.max(f)));
         if dimension == Dimension::Three {
@@ -191,7 +191,7 @@ impl Growth {
             patience: SETTLING_ITERATIONS,
             range: [1.0, 1.0],
             stretch: 0,
-            leaps: false,
+            is_extrapolated: false,
             free: false,
         }
     }
@@ -231,10 +231,15 @@ impl Growth {
     /// Whether the state at this λ is as good as it gets: time for a keyframe.
     pub fn settled(&self) -> bool {
         if self.step + 1 < self.steps.len() {
-            let enough = if self.leaps { ITERATIONS_PER_LEAP } else { self.iterations[usize::from(self.is_key())] };
+            let enough = if self.is_extrapolated {
+                ITERATIONS_PER_EXTRAPOLATION
+            } else {
+                self.iterations[usize::from(self.is_key())]
+            };
             self.iteration >= enough
         } else {
-            let [least, most] = if self.leaps { LEAP_SETTLING } else { [LEAST_SETTLING, self.patience] };
+            let [least, most] =
+                if self.is_extrapolated { EXTRAPOLATED_SETTLING } else { [LEAST_SETTLING, self.patience] };
             self.iteration >= most || (self.iteration >= least && self.motion < SETTLED_MOTION)
         }
     }

@@ -39,21 +39,21 @@ pub use contact::Contacts;
 pub use energy::{CellEnergy, Mixture};
 pub use flow::Flow;
 pub use growth::Growth;
-pub use guard::{Guarded, Watch};
+pub use guard::{Extent, Guarded};
 pub use trail::Trail;
 
 /// Conjugate gradient steps of the global step without and with contacts. More than one without contacts gained nothing
 /// (measured: the rotations, not the solve, are what converges slowly).
 const GLOBAL_STEPS: [u32; 2] = [1, 2];
 
-/// No node moves further than this part of its radius in one iteration (half a cell where cells keep their size), so that
-/// a wall of one cell is not skipped by one.
+/// No node moves further than this part of its radius in one iteration (half a cell where cells keep their size), so
+/// that a wall of one cell is not skipped by one.
 const STEP_LIMIT: f32 = 0.5;
 
-/// The same in the plane, where large parts have to flow far: all of a step's way is proven to be clear.
+/// The same in the plane, where large parts have to flow far: a step is proven to be valid at every instant.
 const FLAT_STEP_LIMIT: f32 = 4.0;
 
-/// How near pairs are kept for the iterations of a leap, in radii.
+/// How near pairs are kept for the iterations of an extrapolated step, in radii.
 const REACH: f32 = 1.5;
 
 /// The constant part of the collision optimization: what depends on complex and importance alone.
@@ -65,8 +65,8 @@ pub struct Problem {
     pub energy: Arc<dyn CellEnergy>,
     /// `[cells]` size factor at λ = 0; `None` for 1, the rest shape.
     pub from: Option<Vec<f32>>,
-    /// `[cells]` weight of each cell's misfit in the plane, `1 / s²`: a cell that shall be small is as much off by a tenth
-    /// of its size as a large one. Empty for 1, which serves in space.
+    /// `[cells]` weight of each cell's misfit in the plane, `1 / s²`: a cell that shall be small is as much off by a
+    /// tenth of its size as a large one. Empty for 1, which serves in space.
     weights: Vec<f32>,
     operator: Multigrid,
     boundary_nodes: Vec<u32>,
@@ -238,7 +238,7 @@ fn remove_rigid_motion(positions: &[Vec3A], step: &mut [Vec3A]) {
     step.par_iter_mut().zip(positions).with_min_len(CHUNK).for_each(|(d, x)| *d -= drift + spin.cross(*x - centre));
 }
 
-/// Guard: takes of the proposed step what stays injective. `holds` is kept from step to step. Returns the new
+/// Guard: takes of the proposed step what stays injective. `backtracking` is kept from step to step. Returns the new
 /// positions' largest motion in cells and what was held back.
 pub fn guard_step<'a>(
     complex: &Complex,
@@ -246,7 +246,7 @@ pub fn guard_step<'a>(
     surfaces: impl Into<Checked<'a>>,
     positions: &mut Vec<Vec3A>,
     mut proposed: Vec<Vec3A>,
-    holds: &mut Vec<u8>,
+    backtracking: &mut Vec<u8>,
 ) -> (f32, Guarded) {
     let reach = match complex.dimension {
         Dimension::Two => FLAT_STEP_LIMIT,
@@ -254,8 +254,8 @@ pub fn guard_step<'a>(
     };
     guard::limit(positions, &mut proposed, |i| reach * asked.radius[i].min(1.0));
     let surfaces = surfaces.into();
-    let watch = if surfaces.written.is_some() { Watch::Way } else { Watch::End };
-    let guarded = guard::guard(complex, surfaces, &asked.size, positions, &mut proposed, watch, holds);
+    let extent = if surfaces.written.is_some() { Extent::Motion } else { Extent::End };
+    let guarded = guard::guard(complex, surfaces, &asked.size, positions, &mut proposed, extent, backtracking);
     let motion = largest_motion(positions, &proposed);
     *positions = proposed;
     (motion, guarded)

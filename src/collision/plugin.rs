@@ -1,4 +1,5 @@
-//! Grow, flow in the plane, local, contact, global, guard: one iteration of the collision optimization per run of the schedule.
+//! Grow, flow in the plane, local, contact, global, guard: one iteration of the collision optimization per run of the
+//! schedule.
 
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ use super::{
     contact, contact_step, flow, global_step, grow, guard_step, largest_motion, local_step, near_step,
 };
 use crate::{
-    certificate::{Placed, Surfaces},
+    certificate::{CarriedState, Surfaces},
     diagnostics::Stopwatch,
     edge::plugin::LinearSolution,
     importance::{asked_sizes, plugin::Importance, smoothed},
@@ -56,34 +57,34 @@ pub struct Proposed(pub Vec<Vec3A>);
 #[derive(Component, Debug)]
 pub struct Warped(pub Vec<Vec3A>);
 
-/// A leap to the next keyframe, while nobody has looked whether it is valid.
+/// An extrapolated step to the next keyframe, while nobody has looked whether it is valid.
 #[derive(Component, Debug, Default)]
-pub struct Leap {
+pub struct ExtrapolatedStep {
     /// `[nodes]` where it is now; V'' stays at the last keyframe meanwhile.
     pub positions: Vec<Vec3A>,
     /// Pairs of boundary nodes that were near each other when it began.
     pub near: Vec<(u32, u32)>,
-    /// The last keyframe, if a leap ended there.
-    pub start: Option<Placed>,
+    /// The last keyframe, if an extrapolated step ended there.
+    pub start: Option<CarriedState>,
     /// λ and `[nodes]` positions of the keyframe before the last.
     pub before: Option<(f32, Vec<Vec3A>)>,
 }
 
 /// Whether the boundary as it will be written is guarded in every iteration, and not only when a keyframe is made: once
-/// it had to be drawn back, it will have to be again, and small holds are better than large ones.
+/// it had to be drawn back, it will have to be again, and many small corrections are better than few large ones.
 #[derive(Component, Debug, Default)]
 pub struct BoundaryAtRisk(pub bool);
 
 /// `[nodes]` how often the guard halved each node's last step.
 #[derive(Component, Debug, Default)]
-pub struct Holds(pub Vec<u8>);
+pub struct Backtracking(pub Vec<u8>);
 
 /// What the guard held back in the last iteration.
 #[derive(Component, Debug, Default)]
-pub struct HeldBack(pub Guarded);
+pub struct Backtracked(pub Guarded);
 
-/// Marks domains that are led by a flow: maps, whose areas matter more than the shape of a cell. Where single parts of a
-/// picture grow, the teeth of a crocodile, a flow gives them their area and takes their outline.
+/// Marks domains that are led by a flow: maps, whose areas matter more than the shape of a cell. Where single parts of
+/// a picture grow, the teeth of a crocodile, a flow gives them their area and takes their outline.
 #[derive(Component, Debug)]
 pub struct Flowing(pub Flow);
 
@@ -136,7 +137,7 @@ impl Plugin for CollisionPlugin {
         app.insert_resource(Energies(self.energy)).add_systems(
             Solve,
             (
-                (begin, grow_sizes, lead, leap).chain().in_set(Stage::Grow),
+                (begin, grow_sizes, lead, extrapolate).chain().in_set(Stage::Grow),
                 fit_cells.in_set(Stage::Local),
                 find_contacts.in_set(Stage::Contact),
                 propose.in_set(Stage::Global),
@@ -209,15 +210,17 @@ fn begin(
             let flow = watch.time("grow", || Flow::new(complex));
             entity.insert(Flowing(flow));
         }
-        entity.insert((Growing(growth), Warped(positions), Leap::default()));
+        entity.insert((Growing(growth), Warped(positions), ExtrapolatedStep::default()));
         if is_from_rest {
-            entity.insert((Rotations::default(), Holds::default(), BoundaryAtRisk::default())).remove::<Resumed>();
+            entity
+                .insert((Rotations::default(), Backtracking::default(), BoundaryAtRisk::default()))
+                .remove::<Resumed>();
         } else {
             entity.insert(Resumed);
         }
         if is_new {
             entity.insert((Sizes::default(), Targets::default(), Touching::default(), Proposed::default()));
-            entity.insert((HeldBack::default(), Trail::default()));
+            entity.insert((Backtracked::default(), Trail::default()));
         }
     }
 }
@@ -311,26 +314,29 @@ fn lead(mut domains: Query<Led>, mut watch: ResMut<Stopwatch>) {
     }
 }
 
-/// Begins a leap where the last two keyframes point; the first one on the way to the linear solution.
-fn leap(mut domains: Query<(&Lattice, &LinearSolution, &Growing, &Warped, &mut Leap)>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), LinearSolution(linear), Growing(growth), Warped(warped), mut leap) in &mut domains {
-        if growth.done() || !growth.is_new_step() || !growth.leaps() {
+/// Begins an extrapolated step where the last two keyframes point; the first one on the way to the linear solution.
+fn extrapolate(
+    mut domains: Query<(&Lattice, &LinearSolution, &Growing, &Warped, &mut ExtrapolatedStep)>,
+    mut watch: ResMut<Stopwatch>,
+) {
+    for (Lattice(complex), LinearSolution(linear), Growing(growth), Warped(warped), mut extrapolated) in &mut domains {
+        if growth.done() || !growth.is_new_step() || !growth.is_extrapolated() {
             continue;
         }
         let (last, next) = (growth.last_key(), growth.lambda());
-        leap.positions = watch.time("grow", || match &leap.before {
+        extrapolated.positions = watch.time("grow", || match &extrapolated.before {
             Some((before, positions)) => blend(positions, warped, (next - before) / (last - before)),
             None => {
-                let way = |((x, v), rest): ((&Vec3A, &Vec3A), &Vec3A)| *x + (next - last) * (*v - *rest);
-                warped.par_iter().zip(linear).zip(&complex.rest).with_min_len(CHUNK).map(way).collect()
+                let ahead = |((x, v), rest): ((&Vec3A, &Vec3A), &Vec3A)| *x + (next - last) * (*v - *rest);
+                warped.par_iter().zip(linear).zip(&complex.rest).with_min_len(CHUNK).map(ahead).collect()
             }
         });
     }
 }
 
-/// Where the iteration is: in a leap, or at V''.
-fn present<'a>(growth: &Growth, warped: &'a Warped, leap: &'a Leap) -> &'a [Vec3A] {
-    if growth.leaps() { &leap.positions } else { &warped.0 }
+/// Where the iteration is: in an extrapolated step, or at V''.
+fn present<'a>(growth: &Growth, warped: &'a Warped, extrapolated: &'a ExtrapolatedStep) -> &'a [Vec3A] {
+    if growth.is_extrapolated() { &extrapolated.positions } else { &warped.0 }
 }
 
 type Fitted<'a> = (
@@ -339,7 +345,7 @@ type Fitted<'a> = (
     &'a Growing,
     &'a Sizes,
     &'a Warped,
-    &'a Leap,
+    &'a ExtrapolatedStep,
     &'a mut Rotations,
     &'a mut Targets,
 );
@@ -351,13 +357,13 @@ fn fit_cells(mut domains: Query<Fitted>, mut watch: ResMut<Stopwatch>) {
         Growing(growth),
         sizes,
         warped,
-        leap,
+        extrapolated,
         mut rotations,
         mut targets,
     ) in &mut domains
     {
         if !growth.done() {
-            let positions = present(growth, warped, leap);
+            let positions = present(growth, warped, extrapolated);
             watch.time("local", || {
                 local_step(complex, problem, &sizes.0, positions, &mut rotations.0, &mut targets.0);
             });
@@ -366,36 +372,59 @@ fn fit_cells(mut domains: Query<Fitted>, mut watch: ResMut<Stopwatch>) {
 }
 
 fn find_contacts(
-    mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Sizes, &Warped, &mut Leap, &mut Touching)>,
+    mut domains: Query<(&Lattice, &CollisionProblem, &Growing, &Sizes, &Warped, &mut ExtrapolatedStep, &mut Touching)>,
     mut watch: ResMut<Stopwatch>,
 ) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), Sizes(sizes), warped, mut leap, mut touching) in
-        &mut domains
+    for (
+        Lattice(complex),
+        CollisionProblem(problem),
+        Growing(growth),
+        Sizes(sizes),
+        warped,
+        mut extrapolated,
+        mut touching,
+    ) in &mut domains
     {
         if growth.done() {
             continue;
         }
         touching.0 = watch.time("contact", || {
-            if !growth.leaps() {
+            if !growth.is_extrapolated() {
                 return contact_step(complex, problem, sizes, &warped.0);
             }
             if growth.is_new_step() {
-                leap.near = near_step(complex, problem, sizes, &leap.positions);
+                extrapolated.near = near_step(complex, problem, sizes, &extrapolated.positions);
             }
-            contact::among(complex, &leap.near, &sizes.radius, &leap.positions)
+            contact::among(complex, &extrapolated.near, &sizes.radius, &extrapolated.positions)
         });
     }
 }
 
-type Pulled<'a> =
-    (&'a Lattice, &'a CollisionProblem, &'a Growing, &'a Warped, &'a Leap, &'a Targets, &'a Touching, &'a mut Proposed);
+type Pulled<'a> = (
+    &'a Lattice,
+    &'a CollisionProblem,
+    &'a Growing,
+    &'a Warped,
+    &'a ExtrapolatedStep,
+    &'a Targets,
+    &'a Touching,
+    &'a mut Proposed,
+);
 
 fn propose(mut domains: Query<Pulled>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), CollisionProblem(problem), Growing(growth), warped, leap, targets, touching, mut proposed) in
-        &mut domains
+    for (
+        Lattice(complex),
+        CollisionProblem(problem),
+        Growing(growth),
+        warped,
+        extrapolated,
+        targets,
+        touching,
+        mut proposed,
+    ) in &mut domains
     {
         if !growth.done() {
-            let positions = present(growth, warped, leap);
+            let positions = present(growth, warped, extrapolated);
             proposed.0 = watch.time("global", || global_step(complex, problem, positions, &targets.0, &touching.0).0);
         }
     }
@@ -409,9 +438,9 @@ type Accepted<'a> = (
     &'a Surfaces,
     &'a mut Warped,
     &'a mut Proposed,
-    &'a mut HeldBack,
-    &'a mut Holds,
-    &'a mut Leap,
+    &'a mut Backtracked,
+    &'a mut Backtracking,
+    &'a mut ExtrapolatedStep,
 );
 
 fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
@@ -423,29 +452,29 @@ fn accept(mut domains: Query<Accepted>, mut watch: ResMut<Stopwatch>) {
         surfaces,
         mut warped,
         mut proposed,
-        mut held_back,
-        mut holds,
-        mut leap,
+        mut backtracked,
+        mut backtracking,
+        mut extrapolated,
     ) in &mut domains
     {
         if growing.0.done() {
             continue;
         }
         let proposed = std::mem::take(&mut proposed.0);
-        if growing.0.leaps() {
-            // The certificate of the whole leap takes the guard's place.
-            growing.0.iterated(largest_motion(&leap.positions, &proposed));
-            leap.positions = proposed;
-            held_back.0 = Guarded::default();
+        if growing.0.is_extrapolated() {
+            // The certificate of the whole extrapolated step takes the guard's place.
+            growing.0.iterated(largest_motion(&extrapolated.positions, &proposed));
+            extrapolated.positions = proposed;
+            backtracked.0 = Guarded::default();
             continue;
         }
         let surfaces = surfaces.all_if(at_risk.0);
-        let (motion, guarded) =
-            watch.time("guard", || guard_step(complex, &sizes.0, surfaces, &mut warped.0, proposed, &mut holds.0));
+        let (motion, guarded) = watch
+            .time("guard", || guard_step(complex, &sizes.0, surfaces, &mut warped.0, proposed, &mut backtracking.0));
         growing.0.iterated(motion);
-        if guarded.held_back > 0 || complex.dimension == Dimension::Two {
-            growing.0.held_back();
+        if guarded.backtracked > 0 || complex.dimension == Dimension::Two {
+            growing.0.backtracked();
         }
-        held_back.0 = guarded;
+        backtracked.0 = guarded;
     }
 }

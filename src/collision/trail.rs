@@ -1,4 +1,5 @@
-//! The states that growth passes in the plane, where parts flow further between two keyframes than straight ways lead.
+//! The states that growth passes in the plane, where parts flow further between two keyframes than straight motions
+//! lead.
 
 use bevy::prelude::Component;
 use glam::{Vec2, Vec3A};
@@ -6,13 +7,13 @@ use glam::{Vec2, Vec3A};
 /// States since the last keyframe may take this much memory; where they would take more, each second is let go.
 const MOST_BYTES: usize = 256 << 20;
 
-/// Flat states since the last keyframe. From each to the next the way is proven to be clear.
+/// Flat states since the last keyframe. The motion from each to the next is proven to be valid.
 #[derive(Component, Debug, Clone, Default)]
 pub struct Trail(Vec<Vec<Vec2>>);
 
 impl Trail {
-    /// Keeps a flat state on the way to the next keyframe, in case that the straight way there is not clear. From each to
-    /// the next the way must be.
+    /// Keeps a flat state on the way to the next keyframe, in case that the straight motion there is not proven. From
+    /// each to the next it must be.
     pub fn pass(&mut self, positions: &[Vec3A]) {
         if size_of::<Vec2>() * positions.len() * self.0.len() > MOST_BYTES {
             let mut is_kept = false;
@@ -24,8 +25,8 @@ impl Trail {
         self.0.push(positions.iter().map(|p| p.truncate()).collect());
     }
 
-    /// The states passed, up to this one where it is among them: what came after a state that was returned to is no way
-    /// there. None are left.
+    /// The states passed, up to this one where it is among them: what came after a state that was returned to does not
+    /// lead there. None are left.
     pub fn take_up_to(&mut self, positions: &[Vec3A]) -> Vec<Vec<Vec2>> {
         let is_it = |passed: &Vec<Vec2>| passed.iter().zip(positions).all(|(a, b)| *a == b.truncate());
         let mut passed = std::mem::take(&mut self.0);

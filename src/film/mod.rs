@@ -1,16 +1,18 @@
 //! The film: certified states at λ_0 = 0 < … < λ_K = 1.
 //!
-//! Playback, scrubbing, recording and export read the film and never solve again. Between two keyframes a state is their
-//! linear blend, which need not be injective because both ends are: blends are checked as well, and where one fails the
-//! film keeps more of what was solved between.
+//! Playback, scrubbing, recording and export read the film and never solve again. Between two keyframes a state is
+//! their linear blend, which need not be injective because both ends are. So the motion from one to the next is proven
+//! to be valid at every instant, and where that fails the film keeps more of what was solved between, or draws the
+//! later one back. Since the first keyframe is the rest state, every state of the film hangs together with it by proven
+//! motions.
 
 pub mod plugin;
 
 use glam::{Vec2, Vec3A};
 
 use crate::{
-    certificate::{Certificate, Checked, Placed, Surfaces, certify, certify_way},
-    collision::{Trail, Watch, guard::guard},
+    certificate::{CarriedState, Certificate, Checked, Surfaces, certify, certify_motion},
+    collision::{Extent, Trail, guard::guard},
     voxel::{Complex, Dimension, blend},
 };
 
@@ -23,15 +25,16 @@ pub struct Keyframe {
     pub positions: Vec<Vec3A>,
     /// What the check found.
     pub certificate: Certificate,
-    /// Whether the blends from the keyframe before to this one are known to be valid.
-    pub way_is_clear: bool,
+    /// Whether the blends from the keyframe before to this one are proven to be valid, at every instant.
+    pub motion_is_proven: bool,
 }
 
 /// Keyframes by ascending λ; the first is the rest state.
 #[derive(Debug, Clone, Default)]
 pub struct Film {
     keyframes: Vec<Keyframe>,
-    /// λ and flat positions of states that the growth passed between keyframes whose way is not known to be clear, ascending.
+    /// λ and flat positions of states that the growth passed between keyframes where the motion is not proven,
+    /// ascending.
     passed: Vec<(f32, Vec<Vec2>)>,
     /// Vertices that follow the states otherwise than when the keyframes were certified.
     stale: Vec<u32>,
@@ -40,8 +43,8 @@ pub struct Film {
 /// Between keyframes nearer in λ than this no other is put.
 const SHORTEST_STEP: f32 = 0.03;
 
-/// The same in the plane, where what was passed lies near to each other: as a part of the distance of the keyframes that
-/// were asked for.
+/// The same in the plane, where what was passed lies near to each other: as a part of the distance of the keyframes
+/// that were asked for.
 const SHORTEST_FLAT_STEP: f32 = 0.008;
 
 impl Film {
@@ -54,13 +57,13 @@ impl Film {
     pub fn push_after(&mut self, mut keyframe: Keyframe, trail: &mut Trail) {
         if self.keyframes.last().is_some_and(|last| last.lambda >= keyframe.lambda) {
             self.keyframes.pop();
-            // It was the way from the one that is replaced.
-            keyframe.way_is_clear = false;
+            // It was the motion from the one that is replaced.
+            keyframe.motion_is_proven = false;
             let last = self.keyframes.last().map_or(0.0, |last| last.lambda);
             self.passed.retain(|(lambda, _)| *lambda < last);
         }
         let passed = trail.take_up_to(&keyframe.positions);
-        if let (Some(last), false) = (self.keyframes.last(), keyframe.way_is_clear) {
+        if let (Some(last), false) = (self.keyframes.last(), keyframe.motion_is_proven) {
             let step = (keyframe.lambda - last.lambda) / (passed.len() + 1) as f32;
             let lambda = |k: usize| last.lambda + step * (k + 1) as f32;
             self.passed.extend(passed.into_iter().enumerate().map(|(k, positions)| (lambda(k), positions)));
@@ -68,11 +71,11 @@ impl Film {
         self.keyframes.push(keyframe);
     }
 
-    /// Makes flat surfaces follow the complex on the straight way between two states, where they must; whether that changed
-    /// any.
-    fn straighten(&mut self, surfaces: &mut Surfaces, way: [&[Vec3A]; 2]) -> bool {
+    /// Makes flat surfaces follow the complex during the straight motion between two states, where they must; whether
+    /// that changed any.
+    fn straighten(&mut self, surfaces: &mut Surfaces, motion: [&[Vec3A]; 2]) -> bool {
         let before = self.stale.len();
-        self.stale.extend(surfaces.straighten(way));
+        self.stale.extend(surfaces.straighten(motion));
         self.stale.len() > before
     }
 
@@ -89,9 +92,9 @@ impl Film {
         &self.keyframes
     }
 
-    /// Makes every blend of two neighbouring keyframes valid, as [`certify_way`] has it. A flat surface that alone is in the
-    /// way follows the complex. Else there are new keyframes between, the states that were passed there first, and where that
-    /// does not help, the later one is drawn back to what can be reached from the earlier.
+    /// Makes every blend of two neighbouring keyframes valid, as [`certify_motion`] has it. A flat surface that alone
+    /// prevents it follows the complex. Else there are new keyframes between, the states that were passed there first,
+    /// and where that does not help, the later one is drawn back to what can be reached from the earlier.
     pub fn mend(&mut self, complex: &Complex, surfaces: &mut Surfaces, size: &[f32]) {
         let shortest = match complex.dimension {
             Dimension::Two => SHORTEST_FLAT_STEP / self.keyframes.len().saturating_sub(1).max(1) as f32,
@@ -106,19 +109,19 @@ impl Film {
                 Some([from, to]) => [from, to],
                 _ => break,
             };
-            if !from.certificate.certified() || to.way_is_clear {
+            if !from.certificate.certified() || to.motion_is_proven {
                 k += 1;
                 continue;
             }
-            if is_clear(complex, &*surfaces, from, to) {
-                self.keyframes[k].way_is_clear = true;
+            if is_proven(complex, &*surfaces, from, to) {
+                self.keyframes[k].motion_is_proven = true;
                 k += 1;
                 continue;
             }
             let [a, b] = [from.lambda, to.lambda];
-            if complex.dimension == Dimension::Two && is_clear(complex, surfaces.skin_alone(), from, to) {
-                let way = [from.positions.clone(), to.positions.clone()];
-                if self.straighten(surfaces, [&way[0], &way[1]]) {
+            if complex.dimension == Dimension::Two && is_proven(complex, surfaces.skin_alone(), from, to) {
+                let motion = [from.positions.clone(), to.positions.clone()];
+                if self.straighten(surfaces, [&motion[0], &motion[1]]) {
                     continue;
                 }
             }
@@ -128,7 +131,7 @@ impl Film {
                     certificate = certify(complex, &*surfaces, &positions);
                 }
                 if certificate.certified() {
-                    self.keyframes.insert(k, Keyframe { lambda, positions, certificate, way_is_clear: false });
+                    self.keyframes.insert(k, Keyframe { lambda, positions, certificate, motion_is_proven: false });
                 }
                 continue;
             }
@@ -139,8 +142,8 @@ impl Film {
             } else {
                 self.keyframes[k] = reached(complex, surfaces, size, from, b, to.positions.clone());
                 if let Some(next) = self.keyframes.get_mut(k + 1) {
-                    // It was the way from where this one was.
-                    next.way_is_clear = false;
+                    // It was the motion from where this one was.
+                    next.motion_is_proven = false;
                 }
                 k += 1;
             }
@@ -148,8 +151,8 @@ impl Film {
         self.passed = Vec::new();
     }
 
-    /// Certifies anew what stale vertices have changed: what is proven to be sound where they are stays certified. Whether
-    /// there were any.
+    /// Certifies anew what stale vertices have changed: what is proven to be sound where they are stays certified.
+    /// Whether there were any.
     fn certify_again(&mut self, complex: &Complex, surfaces: &Surfaces) -> bool {
         let stale = std::mem::take(&mut self.stale);
         let Some(&last) = stale.iter().max() else { return false };
@@ -158,29 +161,30 @@ impl Film {
         for vertex in stale {
             changed[vertex as usize] = true;
         }
-        let stays_sound =
-            |way: [&[Vec3A]; 2]| surfaces.written.as_ref().is_none_or(|written| written.stays_sound(&changed, way));
+        let stays_sound = |motion: [&[Vec3A]; 2]| {
+            surfaces.written.as_ref().is_none_or(|written| written.stays_sound(&changed, motion))
+        };
         for k in 0..self.keyframes.len() {
             let positions = &self.keyframes[k].positions;
-            let way_is_clear = self.keyframes[k].way_is_clear
+            let motion_is_proven = self.keyframes[k].motion_is_proven
                 && (k == 0 || stays_sound([&self.keyframes[k - 1].positions, positions]));
-            // A clear way ends in a state that is certified.
+            // A motion that is proven ends in a state that is certified.
             let stays =
-                way_is_clear || self.keyframes[k].certificate.certified() && stays_sound([positions, positions]);
+                motion_is_proven || self.keyframes[k].certificate.certified() && stays_sound([positions, positions]);
             if !stays {
                 self.keyframes[k].certificate = certify(complex, surfaces, positions);
             }
-            self.keyframes[k].way_is_clear = way_is_clear;
+            self.keyframes[k].motion_is_proven = motion_is_proven;
         }
         true
     }
 }
 
-/// Whether every blend of two keyframes is valid.
-fn is_clear<'a>(complex: &Complex, surfaces: impl Into<Checked<'a>>, from: &Keyframe, to: &Keyframe) -> bool {
+/// Whether every blend of two keyframes is proven to be valid.
+fn is_proven<'a>(complex: &Complex, surfaces: impl Into<Checked<'a>>, from: &Keyframe, to: &Keyframe) -> bool {
     let surfaces = surfaces.into();
-    let [from, to] = [from, to].map(|keyframe| Placed::new(surfaces, keyframe.positions.clone()));
-    certify_way(complex, surfaces, &from, &to).1
+    let [from, to] = [from, to].map(|keyframe| CarriedState::new(surfaces, keyframe.positions.clone()));
+    certify_motion(complex, surfaces, &from, &to).1
 }
 
 /// A keyframe half-way between two, guarded from the first of them.
@@ -197,9 +201,9 @@ fn reached(
     lambda: f32,
     mut positions: Vec<Vec3A>,
 ) -> Keyframe {
-    guard(complex, surfaces, size, &from.positions, &mut positions, Watch::Way, &mut Vec::new());
+    guard(complex, surfaces, size, &from.positions, &mut positions, Extent::Motion, &mut Vec::new());
     let certificate = certify(complex, surfaces, &positions);
-    Keyframe { lambda, positions, certificate, way_is_clear: false }
+    Keyframe { lambda, positions, certificate, motion_is_proven: false }
 }
 
 #[cfg(test)]
@@ -219,11 +223,11 @@ mod tests {
         };
         let last = moved(Vec3A::new(5.0, 0.0, 0.0));
         let mut film = Film::default();
-        let keyframe = |lambda: f32, positions: Vec<Vec3A>, way_is_clear: bool| Keyframe {
+        let keyframe = |lambda: f32, positions: Vec<Vec3A>, motion_is_proven: bool| Keyframe {
             lambda,
             certificate: certify(&complex, &surfaces, &positions),
             positions,
-            way_is_clear,
+            motion_is_proven,
         };
         film.push(keyframe(0.0, complex.rest.clone(), true));
         let mut trail = Trail::default();
@@ -231,18 +235,18 @@ mod tests {
             trail.pass(&moved(Vec3A::new(2.5, 3.0, 0.0)));
         }
         film.push_after(keyframe(0.5, last.clone(), false), &mut trail);
-        // A way that is clear only as long as the keyframe before stays where it is.
+        // A motion that is proven only as long as the keyframe before stays where it is.
         film.push(keyframe(1.0, last.clone(), true));
         film.mend(&complex, &mut surfaces, &vec![1.0; complex.cells.len()]);
         for pair in film.keyframes().windows(2) {
             assert!(pair[0].lambda < pair[1].lambda && pair[1].certificate.certified());
-            assert!(is_clear(&complex, &surfaces, &pair[0], &pair[1]));
+            assert!(is_proven(&complex, &surfaces, &pair[0], &pair[1]));
         }
         (complex, film, last)
     }
 
     #[test]
-    fn ways_go_by_what_was_passed() {
+    fn motions_go_by_what_was_passed() {
         let (complex, film, last) = mended(true);
         assert_eq!(complex.bodies, 2);
         assert_eq!(film.keyframes().len(), 4);

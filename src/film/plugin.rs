@@ -3,12 +3,12 @@
 use bevy::prelude::*;
 use glam::Vec3A;
 
-use super::{Film, Keyframe, is_clear};
+use super::{Film, Keyframe, is_proven};
 use crate::{
-    certificate::{Certificate, Placed, Surfaces, certify, certify_rest, certify_way},
+    certificate::{CarriedState, Certificate, Surfaces, certify, certify_motion, certify_rest},
     collision::{
-        Trail, Watch, grow, guard,
-        plugin::{BoundaryAtRisk, CollisionProblem, Growing, Leap, Resume, Sizes, Start, Valid, Warped},
+        Extent, Trail, grow, guard,
+        plugin::{BoundaryAtRisk, CollisionProblem, ExtrapolatedStep, Growing, Resume, Sizes, Start, Valid, Warped},
     },
     diagnostics::Stopwatch,
     edge::plugin::LinearSolution,
@@ -68,7 +68,7 @@ fn reset(mut commands: Commands, mut domains: Query<Filming, Renewed>, mut watch
             Some((positions, certificate, size)) => {
                 let mut film = Film::default();
                 let state = positions.clone();
-                film.push(Keyframe { lambda: 0.0, positions: state, certificate, way_is_clear: true });
+                film.push(Keyframe { lambda: 0.0, positions: state, certificate, motion_is_proven: true });
                 reel.0 = film;
                 trail.clear();
                 entity.insert(Resume(Some(Valid { positions, size })));
@@ -92,7 +92,7 @@ fn open(
         // What was passed before there was a film leads to no keyframe of it.
         trail.clear();
         let certificate = watch.time("certificate", || certify_rest(complex, surfaces));
-        film.push(Keyframe { lambda: 0.0, positions: complex.rest.clone(), certificate, way_is_clear: true });
+        film.push(Keyframe { lambda: 0.0, positions: complex.rest.clone(), certificate, motion_is_proven: true });
         commands.entity(entity).insert(Reel(film));
     }
 }
@@ -105,19 +105,28 @@ type Filmed<'a> = (
     &'a mut Surfaces,
     &'a mut Reel,
     &'a mut BoundaryAtRisk,
-    &'a mut Leap,
+    &'a mut ExtrapolatedStep,
     &'a mut Trail,
 );
 
 fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
-    for (Lattice(complex), sizes, mut growing, mut warped, mut surfaces, mut reel, mut at_risk, mut leap, mut trail) in
-        &mut domains
+    for (
+        Lattice(complex),
+        sizes,
+        mut growing,
+        mut warped,
+        mut surfaces,
+        mut reel,
+        mut at_risk,
+        mut extrapolated,
+        mut trail,
+    ) in &mut domains
     {
         if growing.0.done() {
             continue;
         }
         let (film, warped, trail) = (&mut reel.0, &mut warped.0, &mut *trail);
-        // In the plane parts flow far between two keyframes, further than straight ways lead.
+        // In the plane parts flow far between two keyframes, further than straight motions lead.
         let is_flat = complex.dimension == Dimension::Two;
         if is_flat {
             trail.pass(warped);
@@ -125,23 +134,24 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         if !growing.0.settled() {
             continue;
         }
-        if growing.0.leaps() {
-            let landed = watch.time("certificate", || {
-                // Where the last way ended, most often.
-                let start = leap.start.take().filter(|start| start.nodes() == warped.as_slice());
-                let start = start.unwrap_or_else(|| Placed::new(&*surfaces, warped.clone()));
-                let end = Placed::new(&*surfaces, std::mem::take(&mut leap.positions));
-                land(complex, &surfaces, &sizes.0.size, &start, &end).map(|certificate| (certificate, start, end))
+        if growing.0.is_extrapolated() {
+            let certified = watch.time("certificate", || {
+                // Where the last motion ended, most often.
+                let start = extrapolated.start.take().filter(|start| start.nodes() == warped.as_slice());
+                let start = start.unwrap_or_else(|| CarriedState::new(&*surfaces, warped.clone()));
+                let end = CarriedState::new(&*surfaces, std::mem::take(&mut extrapolated.positions));
+                certify_extrapolated(complex, &surfaces, &sizes.0.size, &start, &end)
+                    .map(|certificate| (certificate, start, end))
             });
-            let Some((certificate, start, end)) = landed else {
+            let Some((certificate, start, end)) = certified else {
                 growing.0.walk();
                 continue;
             };
             warped.copy_from_slice(end.nodes());
-            leap.before = Some((growing.0.last_key(), start.into_nodes()));
-            leap.start = Some(end);
+            extrapolated.before = Some((growing.0.last_key(), start.into_nodes()));
+            extrapolated.start = Some(end);
             film.push_after(
-                Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate, way_is_clear: true },
+                Keyframe { lambda: growing.0.lambda(), positions: warped.clone(), certificate, motion_is_proven: true },
                 trail,
             );
             growing.0.advance();
@@ -158,29 +168,35 @@ fn keep(mut domains: Query<Filmed>, mut watch: ResMut<Stopwatch>) {
         if !certificate.certified() {
             at_risk.0 = true;
             growing.0.hurry();
-            growing.0.held_back();
+            growing.0.backtracked();
             certificate = draw_back(complex, &sizes.0.size, &surfaces, film, warped, &mut watch);
         }
         if !is_flat {
-            leap.before = film.keyframes().last().map(|k| (k.lambda, k.positions.clone()));
+            extrapolated.before = film.keyframes().last().map(|k| (k.lambda, k.positions.clone()));
         }
         let (lambda, positions) = (growing.0.lambda(), warped.clone());
-        let mut keyframe = Keyframe { lambda, positions, certificate, way_is_clear: false };
+        let mut keyframe = Keyframe { lambda, positions, certificate, motion_is_proven: false };
         if is_flat && let Some(last) = film.keyframes().last() {
-            keyframe.way_is_clear = watch.time("certificate", || is_clear(complex, &*surfaces, last, &keyframe));
+            keyframe.motion_is_proven = watch.time("certificate", || is_proven(complex, &*surfaces, last, &keyframe));
         }
         film.push_after(keyframe, trail);
         growing.0.advance();
     }
 }
 
-/// The certificate of a leap's end, if all of the way there is valid and no element comes out flatter than the guard
-/// would let it.
-fn land(complex: &Complex, surfaces: &Surfaces, size: &[f32], from: &Placed, to: &Placed) -> Option<Certificate> {
-    let (certificate, clear) = certify_way(complex, surfaces, from, to);
+/// The certificate of an extrapolated step's end, if the motion there is proven to be valid and no element comes out
+/// flatter than the guard would let it.
+fn certify_extrapolated(
+    complex: &Complex,
+    surfaces: &Surfaces,
+    size: &[f32],
+    from: &CarriedState,
+    to: &CarriedState,
+) -> Option<Certificate> {
+    let (certificate, proven) = certify_motion(complex, surfaces, from, to);
     let least = size.iter().copied().fold(f32::INFINITY, f32::min);
     let floor = f64::from(guard::VOLUME_FLOOR * complex.dimension.measure(least));
-    (clear && certificate.min_volume_ratio() > floor).then_some(certificate)
+    (proven && certificate.min_volume_ratio() > floor).then_some(certificate)
 }
 
 /// Draws a state that cannot be reached without crossing back towards the last keyframe, and certifies it.
@@ -194,7 +210,7 @@ fn draw_back(
 ) -> Certificate {
     if let Some(last) = film.keyframes().last().filter(|k| k.certificate.certified()) {
         watch.time("guard", || {
-            guard::guard(complex, surfaces, size, &last.positions, warped, Watch::Way, &mut Vec::new())
+            guard::guard(complex, surfaces, size, &last.positions, warped, Extent::Motion, &mut Vec::new())
         });
     }
     watch.time("certificate", || certify(complex, &*surfaces, warped))

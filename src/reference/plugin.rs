@@ -115,5 +115,5 @@ fn keep(
     watch: &mut Stopwatch,
 ) {
     let certificate = watch.time("certificate", || certify(complex, surfaces, positions));
-    film.push(Keyframe { lambda, positions: positions.to_vec(), certificate, way_is_clear: false });
+    film.push(Keyframe { lambda, positions: positions.to_vec(), certificate, motion_is_proven: false });
 }

@@ -7,10 +7,15 @@ use std::process::Command;
 use glam::DVec3;
 use homunculus::{
     Result,
-    boundary::Boundary,
-    importance::{Layer, Stack},
+    boundary::{Boundary, Regions},
+    importance::{
+        Layer, Stack,
+        field::{self, Field},
+    },
+    picture::{self, Cut, Picture},
     run::{self, Observer, Outcome, Progress},
     settings::Settings,
+    voxel::Flat,
 };
 
 /// The folder of real inputs beside the checkout, or `None` with a word where it is not.
@@ -118,4 +123,34 @@ pub fn cuboids(name: &str, boxes: &[([f64; 3], [f64; 3])]) -> Boundary {
         triangles.extend(t.iter().map(|t| t.map(|v| v + first)));
     }
     Boundary::from_triangles(name, positions, triangles)
+}
+
+/// The map of the states of the USA, whose population shall become area, if it is there.
+pub fn states() -> Option<(Picture, Field)> {
+    let [images, facts] = ["images", "facts"].map(shared);
+    let [map, ids, facts] =
+        [images.as_ref()?.join("us_states.png"), images?.join("us_states_id.png"), facts?.join("us_states.csv")];
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = folder.path().join("population.csv");
+    let text = std::fs::read_to_string(facts).expect("a table");
+    let rows = text.lines().filter(|line| line.chars().next().is_some_and(|c| c.is_ascii_digit()));
+    let rows = rows.map(|line| line.split(',').take(3).collect::<Vec<_>>().join(","));
+    std::fs::write(&table, format!("region,name,value\n{}\n", rows.collect::<Vec<_>>().join("\n"))).expect("written");
+
+    let picture = picture::read(&map, &Cut::default()).expect("a picture");
+    let layer = field::Layer::Regions { ids, values: table, per_area: true };
+    let field = Field::load(&[layer], 1.0, false, &picture, Path::new("")).expect("a field");
+    Some((picture, field))
+}
+
+/// A picture as the solver takes it.
+pub fn flat(picture: &Picture, field: &Field) -> Flat {
+    let regions = field.regions.as_ref();
+    Flat {
+        name: "test".into(),
+        size: picture.size,
+        inside: picture.domain.clone(),
+        importance: field.values.clone(),
+        regions: regions.map(|r| Regions { names: r.names.clone(), of_vertex: r.of_pixel.clone() }),
+    }
 }

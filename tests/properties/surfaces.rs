@@ -184,13 +184,13 @@ fn opened(middle: [f32; 3]) -> (Surface, Vec<Vec3A>, Vec<Vec3A>) {
 #[test]
 fn a_triangle_without_area_is_looked_at_where_nothing_can_be_proven() {
     let (surface, rest, to) = opened([2., -1., 0.5]);
-    assert!(surface.doubtful_pairs(&rest, &to).is_empty());
+    assert!(surface.unproven_pairs(&rest, &to).is_empty());
 }
 
 #[test]
 fn sabotage_one_that_folds_onto_its_neighbour_is_seen() {
     let (surface, rest, to) = opened([2., 1., 0.]);
-    assert_eq!(surface.doubtful_pairs(&rest, &to), [(0, 1)]);
+    assert_eq!(surface.unproven_pairs(&rest, &to), [(0, 1)]);
 }
 
 /// Depth and direction of each ordered pair, as bits.

@@ -182,7 +182,7 @@ fn solved(order: &Order) -> Result<Solved> {
     let mut film = Film::default();
     for state in &snapshot.film {
         let (positions, certificate) = ((*state.positions).clone(), state.certificate.clone());
-        film.push(Keyframe { lambda: state.lambda, positions, certificate, way_is_clear: false });
+        film.push(Keyframe { lambda: state.lambda, positions, certificate, motion_is_proven: false });
     }
     let (linear, importance) = ((**linear).clone(), (**importance).clone());
     let (boundary, outcome) = (order.boundary.clone(), Outcome::clone(&order.outcome));
