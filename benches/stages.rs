@@ -16,7 +16,7 @@ use common::{RESOLUTIONS, Subject, Table, human_seconds};
 use criterion::{BenchmarkId, Criterion};
 use glam::{Mat3A, Quat, Vec3A};
 use homunculus::{
-    certificate::{Shell, Surfaces, certify},
+    certificate::{Surfaces, certify},
     collision::{
         Asked, Contacts, Growth, Problem, contact_step, global_step, grow, guard_step, local_step,
         plugin::{CollisionProblem, Growing, Rotations, Warped},
@@ -84,7 +84,7 @@ struct Midway {
     asked: Asked,
     positions: Vec<Vec3A>,
     rotations: Vec<Quat>,
-    shells: Vec<Shell>,
+    surfaces: Surfaces,
 }
 
 impl Midway {
@@ -93,7 +93,7 @@ impl Midway {
         let world = app.world_mut();
         let settings = Settings { resolution, fidelity: 0.5, keys: 8, reference: None };
         let domain = Domain::body(subject.boundary.clone().into(), subject.importance(&[]).into(), settings);
-        let entity = world.spawn(domain).id();
+        let entity = domain.spawn(world);
         let is_midway = |world: &World| {
             world.get::<Growing>(entity).is_some_and(|Growing(g): &Growing| g.lambda() >= 0.5 && g.is_new_step())
         };
@@ -113,7 +113,7 @@ impl Midway {
             problem: problem.clone(),
             positions: positions.clone(),
             rotations: rotations.clone(),
-            shells: entity.get::<Shells>().expect("shells").0.clone(),
+            surfaces: entity.get::<Surfaces>().expect("surfaces").clone(),
         }
     }
 
@@ -141,12 +141,12 @@ fn measure_all(bench: &mut Bench, subject: &Subject) {
 
     let midway = &LazyCell::new(|| Midway::new(subject, resolution));
     measure_collision(bench, complex, midway);
-    for (case, shells) in [("skin", 1), ("skin + surface", 2)] {
+    for (case, with_surface) in [("skin", false), ("skin + surface", true)] {
         bench.measure(
             "certificate",
             case,
-            || midway.shells.clone(),
-            |all| certify(complex, &all[..shells], &midway.positions),
+            || midway.surfaces.clone(),
+            |surfaces| certify(complex, surfaces.all_if(with_surface), &midway.positions),
         );
     }
 }
@@ -175,20 +175,27 @@ fn measure_collision(bench: &mut Bench, complex: &Complex, midway: &LazyCell<Mid
         |(targets, contacts)| midway.global(complex, targets, contacts),
     );
     let proposed = &LazyCell::new(|| midway.global(complex, &forces.0, &forces.1));
-    let state = || (midway.rotations.clone(), midway.positions.clone(), midway.shells[..1].to_vec());
+    let state = || (midway.rotations.clone(), midway.positions.clone(), midway.surfaces.clone());
     bench.measure(
         "collision",
         "guard",
         || (state(), LazyCell::force(proposed).clone()),
-        |((_, positions, skin), proposed)| {
-            guard_step(complex, &midway.asked, skin, positions, std::mem::take(proposed), &mut Vec::new())
+        |((_, positions, surfaces), proposed)| {
+            guard_step(
+                complex,
+                &midway.asked,
+                surfaces.skin_alone(),
+                positions,
+                std::mem::take(proposed),
+                &mut Vec::new(),
+            )
         },
     );
-    bench.measure("collision", "iteration", state, |(rotations, positions, skin)| {
+    bench.measure("collision", "iteration", state, |(rotations, positions, surfaces)| {
         let targets = midway.local(complex, rotations);
         let contacts = midway.contact(complex);
         let proposed = midway.global(complex, &targets, &contacts);
-        guard_step(complex, &midway.asked, skin, positions, proposed, &mut Vec::new())
+        guard_step(complex, &midway.asked, surfaces.skin_alone(), positions, proposed, &mut Vec::new())
     });
 }
 

@@ -14,6 +14,7 @@ use glam::{DVec3, Vec2, Vec3};
 use homunculus::Error;
 use homunculus::boundary::{self, Boundary};
 use homunculus::export::{self, GrowthFrame};
+use homunculus::file::write_atomically;
 
 const FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
 
@@ -459,8 +460,8 @@ fn a_growth_needs_frames_and_time() {
 fn a_failed_write_leaves_what_was_there() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
-    export::write_atomically(&path, |file| file.write_all(b"old")).unwrap();
-    let failed = export::write_atomically(&path, |file| {
+    write_atomically(&path, |file| file.write_all(b"old")).unwrap();
+    let failed = write_atomically(&path, |file| {
         file.write_all(b"half of the n")?;
         Err(std::io::Error::other("the disk is full"))
     });
@@ -468,7 +469,7 @@ fn a_failed_write_leaves_what_was_there() {
     assert_eq!(std::fs::read(&path).unwrap(), b"old");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file stays");
     let missing = folder.path().join("no/such/folder/a.txt");
-    assert!(matches!(export::write_atomically(&missing, |_| Ok(())), Err(Error::File { .. })));
+    assert!(matches!(write_atomically(&missing, |_| Ok(())), Err(Error::File { .. })));
     let (_box, mesh) = textured_box();
     for name in ["a.xyz", "a.gltf", "a"] {
         let error = export::mesh(&mesh, &mesh.positions, None, &folder.path().join(name)).unwrap_err();

@@ -16,7 +16,7 @@ use homunculus::{
     importance::{Layer, Stack},
     run,
     run::Outcome,
-    settings::Settings,
+    settings::{Reference, Settings},
     voxel::{MAX_RESOLUTION, MIN_RESOLUTION},
 };
 

@@ -54,7 +54,7 @@ fn domain(entry: &Entry, settings: Settings, flatten: bool) -> Domain {
 
 fn warp(entry: &Entry, resolution: u32, reference: Option<Reference>, flatten: bool) -> Outcome {
     let settings = Settings { resolution, fidelity: entry.fidelity, keys: 3, reference };
-    solve_domain(domain(entry, settings, flatten), &common::Quiet).expect("it can be warped").outcome
+    solve(domain(entry, settings, flatten), &common::Quiet).expect("it can be warped").outcome
 }
 
 /// What `models.rs` does not look at.

@@ -9,8 +9,7 @@ use homunculus::{
     Result,
     boundary::Boundary,
     importance::{Layer, Stack},
-    run::{Observer, Outcome, Progress},
-    schedule,
+    run::{self, Observer, Outcome, Progress},
     settings::Settings,
 };
 

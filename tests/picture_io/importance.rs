@@ -4,7 +4,7 @@ use crate::{Files, colourful, ids, mesh_of, picture_of, png_bytes, regions, sent
 use glam::{DVec2, dvec2};
 use homunculus::importance::field::{Field, Layer};
 use homunculus::{
-    importance::{RegionArea, areas},
+    importance::{RegionArea, areas, median_error, worst},
     picture::{self, Cut},
 };
 use image::{GrayImage, Luma, Rgba, RgbaImage};
@@ -153,12 +153,12 @@ fn areas_are_those_of_the_images() {
     let asked = |p: DVec2| dvec2(if p.x < 16.0 { p.x * 5.0 / 16.0 } else { 5.0 + (p.x - 16.0) * 15.0 / 4.0 }, p.y);
     let reached = measure(&asked);
     assert!(reached.iter().all(|r| r.error() < 1e-6), "{reached:?}");
-    assert!(picture::median_error(&reached) < 1e-6);
+    assert!(median_error(&reached) < 1e-6);
     let missed = measure(&|p| 1.1 * asked(p));
-    assert!((picture::worst(&missed).unwrap().error() - 0.21).abs() < 1e-6, "sabotage: ten per cent longer is seen");
+    assert!((worst(&missed).unwrap().error() - 0.21).abs() < 1e-6, "sabotage: ten per cent longer is seen");
     let row = |achieved| RegionArea { name: String::new(), asked: 1.0, achieved };
-    assert!((picture::median_error(&[row(1.1), row(1.3), row(0.5), row(1.0)]) - 0.2).abs() < 1e-12);
-    assert_eq!(picture::median_error(&[]), 0.0);
+    assert!((median_error(&[row(1.1), row(1.3), row(0.5), row(1.0)]) - 0.2).abs() < 1e-12);
+    assert_eq!(median_error(&[]), 0.0);
 }
 
 #[test]
@@ -175,5 +175,5 @@ fn states_of_the_shared_map_are_measured() {
     let still = areas(&field, &picture, &mesh, &mesh.rest);
     let (asked, achieved): (f64, f64) = still.iter().fold((0.0, 0.0), |(a, b), r| (a + r.asked, b + r.achieved));
     assert!((asked / achieved - 1.0).abs() < 1e-4, "the states together keep their area: {asked} of {achieved}");
-    assert_eq!(picture::worst(&still).unwrap().name, "Wyoming", "seventeen times as large as its people ask for");
+    assert_eq!(worst(&still).unwrap().name, "Wyoming", "seventeen times as large as its people ask for");
 }

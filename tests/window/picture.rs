@@ -10,7 +10,7 @@ use bevy::window::FileDragAndDrop;
 use glam::DVec3;
 use homunculus::app::play::Shown;
 use homunculus::certificate::Places;
-use homunculus::certificate::Shell;
+use homunculus::certificate::{Shell, Surfaces};
 use homunculus::importance::Layer;
 use homunculus::paint::{Edit, Fill};
 use homunculus::panel::{Asked, Compare, Wish};
