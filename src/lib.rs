@@ -54,6 +54,7 @@ pub mod error;
 pub mod export;
 pub mod file;
 pub mod film;
+pub mod format;
 pub mod gallery;
 pub mod importance;
 pub mod multigrid;
@@ -69,6 +70,7 @@ pub mod scene;
 pub mod schedule;
 pub mod session;
 pub mod settings;
+pub mod subject;
 pub mod transfer;
 #[cfg(feature = "render")]
 pub mod view;

@@ -8,8 +8,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, UVec2, Vec3A};
 use homunculus::boundary::{Boundary, Regions};
 use homunculus::certificate::Checked;
-use homunculus::importance;
-use homunculus::importance::field::{Field, Layer};
+use homunculus::importance::{self, Field, Layer};
 use homunculus::picture::{self, Cut, FlatMesh, Picture};
 use homunculus::voxel::Flat;
 use homunculus::voxel::blend;
@@ -186,7 +185,7 @@ fn states() -> Option<(Picture, Field)> {
     std::fs::write(&table, format!("region,name,value\n{}\n", rows.collect::<Vec<_>>().join("\n"))).expect("written");
 
     let picture = picture::read(&map, &Cut::default()).expect("a picture");
-    let layer = Layer::Regions { ids, values: table, per_area: true };
+    let layer = Layer::Regions { regions: ids, values: table, per_area: true };
     let field = Field::load(&[layer], 1.0, false, &picture, Path::new("")).expect("a field");
     Some((picture, field))
 }

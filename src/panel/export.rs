@@ -3,6 +3,7 @@
 use bevy_egui::egui::{self, Context, Ui};
 
 use super::{Asked, Choice, Facts, Wish, theme};
+use crate::format::{Kind, Use};
 
 /// How results are written.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,12 +38,6 @@ impl Default for ExportChoice {
     }
 }
 
-/// Formats the growth of a picture can be written in.
-const PICTURE_GROWTH_FORMATS: [&str; 3] = ["gif", "apng", "glb"];
-
-/// Formats a mesh can be written in.
-pub const MESH_FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
-
 pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     let mut is_open = choice.export.is_open;
     theme::dialog(ctx, "Export", &mut is_open).show(ctx, |ui| {
@@ -60,7 +55,7 @@ pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &m
 }
 
 fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
-    if facts.is_picture() {
+    if facts.is_flat() {
         picture(ui, export, wishes);
     } else {
         mesh(ui, export, wishes);
@@ -82,7 +77,7 @@ fn picture(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
     part(ui, "Growth animation", hint, Asked::ExportGrowth, wishes, |ui| {
         seconds(ui, &mut export.seconds);
         egui::ComboBox::from_id_salt("growth").width(60.0).selected_text(export.picture_growth).show_ui(ui, |ui| {
-            for format in PICTURE_GROWTH_FORMATS {
+            for format in Use::Growth(Kind::Picture).extensions() {
                 ui.selectable_value(&mut export.picture_growth, format, format);
             }
         });
@@ -98,7 +93,7 @@ fn mesh(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
         wishes,
         |ui| {
             egui::ComboBox::from_id_salt("format").width(60.0).selected_text(export.format).show_ui(ui, |ui| {
-                for format in MESH_FORMATS {
+                for format in Use::Result(Kind::Body).extensions() {
                     ui.selectable_value(&mut export.format, format, format);
                 }
             });

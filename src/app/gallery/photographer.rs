@@ -1,21 +1,15 @@
-//! The four pictures of a body.
-
-use std::sync::Arc;
-use std::time::Instant;
+//! Pictures of what it takes a renderer to draw.
 
 use bevy::math::Vec3;
 use bevy::prelude::{Entity, World};
 use image::{DynamicImage, RgbImage};
 
-use super::exhibit::{Found, SIDE};
-use crate::app::{load, progress, scene_options};
-use crate::export::report::Report;
+use super::exhibit::SIDE;
 use crate::gallery::Entry;
 use crate::record::{Mix, Sight, Subject};
-use crate::run::{self, Domain};
-use crate::scene::{Scene, Source};
+use crate::run::Solved;
 use crate::view::headless::{Renderer, Shown};
-use crate::view::{self, FIELD_OF_VIEW, Looks, Mode, Orbit, Pose, Quality};
+use crate::view::{self, FIELD_OF_VIEW, Looks, Orbit, Pose, Quality};
 use crate::{Error, Result};
 
 /// Draws bodies, one after the other.
@@ -33,30 +27,21 @@ impl Photographer {
         Renderer::new([SIDE; 2], quality).map(|renderer| Self { renderer })
     }
 
-    /// Warps a scene and takes its pictures.
+    /// Takes the pictures of a scene that was solved, in the colours of its importance.
     ///
     /// # Errors
-    /// What the engine or the driver refuses.
-    pub fn exhibit(&mut self, entry: &Entry) -> Result<Found> {
-        let scene = Scene::new(scene_options::fresh(&Source::Gallery(entry.name.into())))?;
-        let (boundary, stack) = load::prepare(&scene, load::open(&scene.source)?)?;
-        let settings = load::settings_of(&scene);
-        let start = Instant::now();
-        let clamped = stack.clamped();
-        let domain = Domain::body(Arc::new(boundary), Arc::new(stack), settings.clone());
-        let solved = run::solve(domain, &progress::watcher(true))?;
-        let seconds = start.elapsed().as_secs_f64();
-        let (mut subject, outcome) = Subject::new(solved.boundary.clone(), solved);
-        let report = Report::of(&scene, &settings, clamped, &outcome, Vec::new());
-
-        let looks =
-            Looks { mode: Mode::Importance, importance: Some(subject.importance().clone()), ..Looks::default() };
-        let legend = looks.legend();
+    /// What the driver refuses.
+    pub fn portraits(&mut self, entry: &Entry, solved: Solved, coloured: Looks) -> Result<[RgbImage; 4]> {
+        let mut subject = Subject::new(solved.boundary.clone(), solved);
         let last = subject.lambdas().len().saturating_sub(1);
         let faults = Looks { marked: Some(subject.classic_faults(1.0)), ..Looks::default() };
         let at = |key: usize| subject.pose(Mix { from: key, to: key, t: 0.0 });
-        let views =
-            [(Looks::default(), at(0)), (looks.clone(), at(0)), (faults, subject.classic_pose(1.0)), (looks, at(last))];
+        let views = [
+            (Looks::default(), at(0)),
+            (coloured.clone(), at(0)),
+            (faults, subject.classic_pose(1.0)),
+            (coloured, at(last)),
+        ];
         let orbit = stand(&subject, entry);
         let body = self.renderer.show(Shown::new(subject.body()));
         let mut pictures = Vec::with_capacity(views.len());
@@ -65,8 +50,7 @@ impl Photographer {
         }
         self.renderer.world_mut().despawn(body);
         let pictures: Vec<RgbImage> = pictures.into_iter().collect::<Result<_>>()?;
-        let pictures = pictures.try_into().map_err(|_| Error::Fault("a scene has four pictures".into()))?;
-        Ok(Found { pictures, legend, report, seconds })
+        pictures.try_into().map_err(|_| Error::Fault("a scene has four pictures".into()))
     }
 
     fn picture(&mut self, body: Entity, looks: Looks, pose: Pose, orbit: Orbit) -> Result<RgbImage> {

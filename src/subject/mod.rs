@@ -1,0 +1,258 @@
+//! What is warped, from its source to the files that come of it: one road for all kinds.
+//!
+//! ```text
+//! find → open (layers) → paint → content → solve → report, result, growth, film
+//! ```
+//!
+//! A [`Subject`] is something that has been read, with its importance: a body or a picture. Whoever loads, paints, solves,
+//! reports and writes asks it, and not of which kind it is. Another kind is a file here, a line in [`find`], and a
+//! [`Kind`] of its own.
+
+mod body;
+mod picture;
+
+use std::fmt::Debug;
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3A};
+use image::RgbImage;
+
+pub use body::Body;
+
+use crate::boundary::Boundary;
+use crate::export::GrowthFrame;
+use crate::export::report::{AreaReport, PictureReport, Report};
+use crate::format::Kind;
+use crate::importance::{self, Stack};
+use crate::paint::{self, Edit, Under};
+use crate::run::{Content, DomainSummary, InputSummary, Outcome, Solved};
+use crate::scene::{Draft, Scene, Source};
+use crate::settings::Settings;
+use crate::voxel::Complex;
+use crate::{Error, Result};
+
+/// Importance that is being painted on a subject.
+pub type Painting = paint::Painting<Arc<dyn Subject>>;
+
+/// Something to be warped, read and with its importance.
+pub trait Subject: Debug + Send + Sync {
+    /// Of which kind it is.
+    fn kind(&self) -> Kind;
+
+    /// Sentences about what was read.
+    fn warnings(&self) -> Vec<String>;
+
+    /// How many values of importance were moved or left out.
+    fn clamped(&self) -> usize;
+
+    /// What the engine takes.
+    fn content(&self) -> Content;
+
+    /// What is painted on: strokes are kept at its vertices.
+    fn surface(&self) -> &Arc<Boundary>;
+
+    /// What the layers say there.
+    fn stack(&self) -> Arc<Stack>;
+
+    /// The same with `[vertices]` of the surface added to ln f by hand.
+    fn painted(&self, differences: Vec<f64>) -> Arc<dyn Subject>;
+
+    /// The same, unpainted, with the layers of another scene; its source is not read again.
+    ///
+    /// # Errors
+    /// What the layers refuse.
+    fn with_layers(&self, scene: &Scene) -> Result<Arc<dyn Subject>>;
+
+    /// `[vertices]` of what is drawn: values of the surface's vertices. `None` where the surface itself is drawn.
+    fn carried(&self, _values: &[f64], _to: &Boundary) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// The surface's vertex nearest to a place, source units. `None` where the surface itself is drawn.
+    fn vertex_at(&self, _place: DVec3) -> Option<u32> {
+        None
+    }
+
+    /// The boundary that was solved as it is to be drawn.
+    ///
+    /// # Errors
+    /// A fault where a texture cannot be encoded.
+    fn drawn(&self, boundary: &Arc<Boundary>) -> Result<Arc<Boundary>> {
+        Ok(boundary.clone())
+    }
+
+    /// `[values]` of importance that colours are to tell apart.
+    fn asked(&self, outcome: &Outcome) -> Vec<f32> {
+        outcome.importance.clone()
+    }
+
+    /// Areas of regions, where regions ask for area.
+    fn areas(&self, _grown: &Grown) -> Option<AreaReport> {
+        None
+    }
+
+    /// Writes the last state, in the format of the file's name.
+    ///
+    /// # Errors
+    /// A name of no such format, or what the system refuses; nothing is left then.
+    fn write_result(&self, grown: &Grown, look: &Look, path: &Path) -> Result<()>;
+
+    /// Writes all states as an animation, in the format of the file's name.
+    ///
+    /// # Errors
+    /// As [`write_result`](Self::write_result); [`Error::Cancelled`] when `stopped` says so.
+    fn write_growth(&self, grown: &Grown, look: &Look, path: &Path, stopped: &(dyn Fn() -> bool + Sync)) -> Result<()>;
+
+    /// Pictures of `side` pixels, where it takes no renderer to draw it: at rest, its importance by the colours given, Eq. 1
+    /// alone with its crossings, and the last state.
+    fn portraits(
+        &self,
+        _solved: &Solved,
+        _side: u32,
+        _colour: &dyn Fn(f32) -> [u8; 3],
+    ) -> Option<Result<[RgbImage; 4]>> {
+        None
+    }
+}
+
+/// How results are to look.
+#[derive(Debug, Clone, Copy)]
+pub struct Look {
+    /// Of a picture: pixels of the result along one of the input, > 0.
+    pub scale: f64,
+    /// Length of the growth, > 0.
+    pub seconds: f32,
+    /// Whether vertices have the colours of importance; what is usual where nothing is said.
+    pub coloured: Option<bool>,
+}
+
+/// What has come of a subject.
+#[derive(Clone, Copy)]
+pub struct Grown<'a> {
+    /// B; of a picture the flat mesh it is drawn on.
+    pub boundary: &'a Arc<Boundary>,
+    /// States and what was found.
+    pub outcome: &'a Outcome,
+    /// C and C_t.
+    pub complex: &'a Complex,
+    /// `[nodes]` the last state, in cells; empty where there is none.
+    pub last: &'a [Vec3A],
+}
+
+impl<'a> From<&'a Solved> for Grown<'a> {
+    fn from(solved: &'a Solved) -> Self {
+        let last = solved.film.keyframes().last().map_or(&[][..], |last| &last.positions);
+        Self { boundary: &solved.boundary, outcome: &solved.outcome, complex: &solved.complex, last }
+    }
+}
+
+impl Grown<'_> {
+    /// `[vertices]` the colours of importance, if they are wanted.
+    fn colours(&self, wanted: bool) -> Option<Vec<[f32; 3]>> {
+        wanted.then(|| importance::colours(&self.outcome.importance))
+    }
+
+    /// The states as a growth is written of them.
+    fn frames(&self) -> Vec<GrowthFrame<'_>> {
+        let frames = self.outcome.frames.iter();
+        frames.map(|frame| GrowthFrame { lambda: frame.lambda, positions: &frame.positions }).collect()
+    }
+}
+
+/// Something that has been found, and not read yet.
+pub trait Found {
+    /// Of which kind it is.
+    fn kind(&self) -> Kind;
+
+    /// Reads it, with the layers of its scene; strokes are left to [`painted`].
+    ///
+    /// # Errors
+    /// What the readers and the layers refuse.
+    fn open(self: Box<Self>, scene: &Scene) -> Result<Arc<dyn Subject>>;
+
+    /// Reads it, to look at it alone. `background`: `COLOUR,TOLERANCE` of what is cut out of a picture.
+    ///
+    /// # Errors
+    /// What the readers refuse, or a resolution out of range.
+    fn inspect(self: Box<Self>, background: Option<&str>, resolution: u32) -> Result<Inspected>;
+}
+
+/// What is in a source, and what would be solved.
+pub struct Inspected {
+    /// B; of a picture the flat mesh it would be drawn on.
+    pub boundary: Boundary,
+    /// What was read.
+    pub input: InputSummary,
+    /// What would be voxelized.
+    pub domain: DomainSummary,
+    /// Of a picture.
+    pub picture: Option<PictureReport>,
+    /// Sentences about what was read.
+    pub warnings: Vec<String>,
+}
+
+/// Finds what a source is; a file is told by its content.
+///
+/// # Errors
+/// A file that is known and cannot be read, or a name that the gallery does not have.
+pub fn find(source: &Source) -> Result<Box<dyn Found>> {
+    /// Who is asked, in this order. The last one takes what nobody knows, to say what is wrong with it.
+    const KINDS: [fn(&Source) -> Result<Option<Box<dyn Found>>>; 2] = [picture::find, body::find];
+    for find in KINDS {
+        if let Some(found) = find(source)? {
+            return Ok(found);
+        }
+    }
+    Err(Error::Fault(format!("{source}: nobody takes it")))
+}
+
+/// The subject with a scene's strokes over its layers.
+///
+/// # Errors
+/// Names the stroke, the value and its range, or the region that is not there.
+pub fn painted(subject: Arc<dyn Subject>, strokes: &[Edit]) -> Result<Arc<dyn Subject>> {
+    if strokes.is_empty() {
+        return Ok(subject);
+    }
+    paint::differences(subject.surface(), &subject.stack(), strokes).map(|differences| subject.painted(differences))
+}
+
+/// A subject with its layers, to be painted over: of a scene, or one that is known already with the layers of that scene.
+///
+/// # Errors
+/// What the readers and the layers refuse.
+pub fn under(scene: &Scene, known: Option<&Arc<dyn Subject>>) -> Result<Under<Arc<dyn Subject>>> {
+    let subject = match known {
+        Some(known) => known.with_layers(scene)?,
+        None => find(&scene.source)?.open(scene)?,
+    };
+    let Draft { layers, hidden, base, clamp, .. } = Draft::clone(scene);
+    Ok(Under { layers, hidden, base, clamp, boundary: subject.surface().clone(), stack: subject.stack(), subject })
+}
+
+/// A sentence for who asks for nothing: the subject will stay as it is.
+pub fn warn_of_nothing(scene: &Scene, kind: Kind) -> Option<String> {
+    let is_said = matches!(scene.source, Source::Gallery(_))
+        || !scene.shown_layers().is_empty()
+        || !scene.strokes.is_empty()
+        || scene.base != 1.0;
+    let (what, how) = match kind {
+        Kind::Body => ("shape", "--sphere in homunculus warp --help"),
+        Kind::Picture => ("picture", "--sphere and --regions"),
+    };
+    (!is_said).then(|| format!("no importance was given, so the {what} stays as it is; see {how}"))
+}
+
+/// What is told of a subject that has grown. `warnings`: what was told on the way.
+pub fn report(
+    subject: &dyn Subject,
+    scene: &Scene,
+    settings: &Settings,
+    grown: &Grown,
+    warnings: Vec<String>,
+) -> Report {
+    let mut report = Report::of(scene, settings, subject.clamped(), grown.outcome, warnings);
+    report.take_areas(subject.areas(grown));
+    report
+}
