@@ -52,7 +52,7 @@ struct AttributeRange {
 /// Looks and tells.
 pub(super) fn run(options: &InspectOptions) -> Result<Verdict> {
     let found = subject::find(&options.source)?;
-    only_of_pictures(&*found, &[("--background", options.background.is_some())])?;
+    only_of_pictures(found.kind(), "--background", options.background.is_some())?;
     let resolution = options.resolution.unwrap_or(usual(found.kind()).0);
     let inspection = Inspection::of(&options.source, found.inspect(options.background.as_deref(), resolution)?);
     let text = if options.json {

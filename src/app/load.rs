@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::options::SceneOptions;
 use super::{cancel, note, progress};
 use crate::export::report::Report;
+use crate::format::Kind;
 use crate::run::{self, Domain, Solved};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -53,16 +54,12 @@ impl Loaded {
     }
 }
 
-/// Refuses an option that only flat subjects have.
-pub(super) fn only_of_pictures(found: &dyn Found, options: &[(&str, bool)]) -> Result<()> {
-    let given: Vec<&str> = options.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
-    let (are, them) = if given.len() == 1 { ("is", "it") } else { ("are", "them") };
-    match found.kind() {
-        kind if !kind.is_flat() && !given.is_empty() => Err(Error::input(format!(
-            "{} {are} for pictures, and this is a {}; leave {them} out",
-            given.join(" and "),
-            kind.word()
-        ))),
-        _ => Ok(()),
+/// Refuses options that only pictures have.
+pub(super) fn only_of_pictures(kind: Kind, options: &str, are_given: bool) -> Result<()> {
+    if kind.is_flat() || !are_given {
+        return Ok(());
     }
+    let (are, them) = if options.contains(" and ") { ("are", "them") } else { ("is", "it") };
+    let sentence = format!("{options} {are} for pictures, and this is a {}; leave {them} out", kind.word());
+    Err(Error::input(sentence))
 }

@@ -12,7 +12,7 @@ use crate::Result;
 use crate::diagnostics::human_bytes;
 use crate::export::report::Report;
 use crate::format::Use;
-use crate::record::{self, Account, Settings, Subject, sidecar};
+use crate::record::{self, Account, Actor, Settings, sidecar};
 use crate::scene::Scene;
 use crate::subject::{self, Grown};
 
@@ -34,7 +34,7 @@ pub(super) fn run(order: &RecordOrder) -> Result<Verdict> {
     let scene = options.scene.scene(&order.layers)?;
     let found = subject::find(&scene.source)?;
     let settings = options.settings(found.kind().is_flat())?;
-    only_of_pictures(&*found, &[("--background", scene.background.is_some())])?;
+    only_of_pictures(found.kind(), "--background", scene.background.is_some())?;
     check_outputs(options, &settings, &scene)?;
     let adapter = record::check(&settings, &options.output)?;
     let quiet = options.scene.quiet;
@@ -44,9 +44,9 @@ pub(super) fn run(order: &RecordOrder) -> Result<Verdict> {
     let loaded = Loaded::new(&scene, &options.scene, found)?;
     let solved = loaded.solve()?;
     let report = loaded.report(&scene, &Grown::from(&solved));
-    let mut subject = Subject::new(loaded.subject.drawn(&solved.boundary)?, solved);
+    let mut actor = Actor::new(loaded.subject.drawn(&solved.boundary)?, solved);
     let watcher = progress::watcher(quiet);
-    let take = record::shoot(&mut subject, &settings, &options.output, &watcher, |_| {});
+    let take = record::shoot(&mut actor, &settings, &options.output, &watcher, |_| {});
     watcher.finish();
     let take = take?;
     let account = take.account.clone();

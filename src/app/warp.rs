@@ -12,7 +12,8 @@ pub(super) fn run(order: &WarpOrder) -> Result<Verdict> {
     let options = &order.options;
     let scene = order.scene()?;
     let found = subject::find(&scene.source)?;
-    only_of_pictures(&*found, &[("--scale", options.scale.is_some()), ("--background", scene.background.is_some())])?;
+    let of_pictures = options.scale.is_some() || scene.background.is_some();
+    only_of_pictures(found.kind(), "--scale and --background", of_pictures)?;
     let outputs = Outputs::of(options, &scene, found.kind())?;
     let loaded = Loaded::new(&scene, &options.scene, found)?;
     let solved = loaded.solve()?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Found, Grown, Inspected, Look, Subject};
+use super::{Found, Grown, Inspected, Look, Stopped, Subject};
 use crate::boundary::{self, Attribute, Boundary};
 use crate::export;
 use crate::format::Kind;
@@ -24,8 +24,8 @@ pub struct Body {
 }
 
 /// What is no other kind is a body.
-pub(super) fn find(source: &Source) -> Result<Option<Box<dyn Found>>> {
-    Ok(Some(Box::new(Unread(source.clone()))))
+pub(super) fn find(source: &Source) -> Box<dyn Found> {
+    Box::new(Unread(source.clone()))
 }
 
 struct Unread(Source);
@@ -94,7 +94,7 @@ impl Subject for Body {
         export::mesh(grown.boundary, &last.positions, colours.as_deref(), path)
     }
 
-    fn write_growth(&self, grown: &Grown, look: &Look, path: &Path, stopped: &(dyn Fn() -> bool + Sync)) -> Result<()> {
+    fn write_growth(&self, grown: &Grown, look: &Look, path: &Path, stopped: Stopped) -> Result<()> {
         let colours = grown.colours(look.coloured.unwrap_or(true));
         export::growth(grown.boundary, &grown.frames(), colours.as_deref(), look.seconds, path, stopped)
     }

@@ -20,6 +20,7 @@ use image::RgbImage;
 
 pub use body::Body;
 
+use crate::Result;
 use crate::boundary::Boundary;
 use crate::export::GrowthFrame;
 use crate::export::report::{AreaReport, PictureReport, Report};
@@ -30,7 +31,6 @@ use crate::run::{Content, DomainSummary, InputSummary, Outcome, Solved};
 use crate::scene::{Draft, Scene, Source};
 use crate::settings::Settings;
 use crate::voxel::Complex;
-use crate::{Error, Result};
 
 /// Importance that is being painted on a subject.
 pub type Painting = paint::Painting<Arc<dyn Subject>>;
@@ -101,20 +101,21 @@ pub trait Subject: Debug + Send + Sync {
     /// Writes all states as an animation, in the format of the file's name.
     ///
     /// # Errors
-    /// As [`write_result`](Self::write_result); [`Error::Cancelled`] when `stopped` says so.
-    fn write_growth(&self, grown: &Grown, look: &Look, path: &Path, stopped: &(dyn Fn() -> bool + Sync)) -> Result<()>;
+    /// As [`write_result`](Self::write_result); [`Cancelled`](crate::Error::Cancelled) when `stopped` says so.
+    fn write_growth(&self, grown: &Grown, look: &Look, path: &Path, stopped: Stopped) -> Result<()>;
 
     /// Pictures of `side` pixels, where it takes no renderer to draw it: at rest, its importance by the colours given, Eq. 1
     /// alone with its crossings, and the last state.
-    fn portraits(
-        &self,
-        _solved: &Solved,
-        _side: u32,
-        _colour: &dyn Fn(f32) -> [u8; 3],
-    ) -> Option<Result<[RgbImage; 4]>> {
+    fn portraits(&self, _solved: &Solved, _side: u32, _colour: Colouring) -> Option<Result<[RgbImage; 4]>> {
         None
     }
 }
+
+/// Asked now and then by what takes long: whether to stop.
+pub type Stopped<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// The colour of a value of importance, sRGB.
+pub type Colouring<'a> = &'a dyn Fn(f32) -> [u8; 3];
 
 /// How results are to look.
 #[derive(Debug, Clone, Copy)]
@@ -197,14 +198,11 @@ pub struct Inspected {
 /// # Errors
 /// A file that is known and cannot be read, or a name that the gallery does not have.
 pub fn find(source: &Source) -> Result<Box<dyn Found>> {
-    /// Who is asked, in this order. The last one takes what nobody knows, to say what is wrong with it.
-    const KINDS: [fn(&Source) -> Result<Option<Box<dyn Found>>>; 2] = [picture::find, body::find];
-    for find in KINDS {
-        if let Some(found) = find(source)? {
-            return Ok(found);
-        }
-    }
-    Err(Error::Fault(format!("{source}: nobody takes it")))
+    // What nobody knows is a body: its readers say what is wrong with it.
+    Ok(match picture::find(source)? {
+        Some(found) => found,
+        None => body::find(source),
+    })
 }
 
 /// The subject with a scene's strokes over its layers.

@@ -6,7 +6,7 @@ use image::{DynamicImage, RgbImage};
 
 use super::exhibit::SIDE;
 use crate::gallery::Entry;
-use crate::record::{Mix, Sight, Subject};
+use crate::record::{Actor, Mix, Sight};
 use crate::run::Solved;
 use crate::view::headless::{Renderer, Shown};
 use crate::view::{self, FIELD_OF_VIEW, Looks, Orbit, Pose, Quality};
@@ -32,18 +32,18 @@ impl Photographer {
     /// # Errors
     /// What the driver refuses.
     pub fn portraits(&mut self, entry: &Entry, solved: Solved, coloured: Looks) -> Result<[RgbImage; 4]> {
-        let mut subject = Subject::new(solved.boundary.clone(), solved);
-        let last = subject.lambdas().len().saturating_sub(1);
-        let faults = Looks { marked: Some(subject.classic_faults(1.0)), ..Looks::default() };
-        let at = |key: usize| subject.pose(Mix { from: key, to: key, t: 0.0 });
+        let mut actor = Actor::new(solved.boundary.clone(), solved);
+        let last = actor.lambdas().len().saturating_sub(1);
+        let faults = Looks { marked: Some(actor.classic_faults(1.0)), ..Looks::default() };
+        let at = |key: usize| actor.pose(Mix { from: key, to: key, t: 0.0 });
         let views = [
             (Looks::default(), at(0)),
             (coloured.clone(), at(0)),
-            (faults, subject.classic_pose(1.0)),
+            (faults, actor.classic_pose(1.0)),
             (coloured, at(last)),
         ];
-        let orbit = stand(&subject, entry);
-        let body = self.renderer.show(Shown::new(subject.body()));
+        let orbit = stand(&actor, entry);
+        let body = self.renderer.show(Shown::new(actor.body()));
         let mut pictures = Vec::with_capacity(views.len());
         for (looks, pose) in views {
             pictures.push(self.picture(body, looks, pose, orbit));
@@ -64,9 +64,9 @@ impl Photographer {
 }
 
 /// Where the camera stands so that the scene is seen from where it is best seen, in all states.
-fn stand(subject: &Subject, entry: &Entry) -> Orbit {
+fn stand(actor: &Actor, entry: &Entry) -> Orbit {
     let [yaw, pitch] = entry.camera.map(f32::to_radians);
-    let [certified, classic] = subject.reach();
+    let [certified, classic] = actor.reach();
     let points: Vec<Vec3> = certified.into_iter().chain(classic).collect();
     let lens = Sight { yaws: &[yaw], pitch, opening: FIELD_OF_VIEW, aspect: 1.0 }.fit(&points);
     Orbit { target: lens.target, distance: lens.distance, yaw, pitch, ..Orbit::default() }

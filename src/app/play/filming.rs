@@ -10,7 +10,7 @@ use image::RgbaImage;
 use super::results::Order;
 use crate::certificate::Surfaces;
 use crate::film::{Film, Keyframe};
-use crate::record::{self, Camera, Draft, Settings, Subject};
+use crate::record::{self, Actor, Camera, Draft, Settings};
 use crate::run::{Observer, Outcome, Progress, Solved};
 use crate::session::Lattice;
 use crate::view::Orbit;
@@ -115,8 +115,8 @@ impl Shooting {
 
     fn shoot(&self) -> Result<(PathBuf, bool)> {
         let order = &self.order;
-        let mut subject = Subject::new(order.lattice.boundary.clone(), solved(order)?);
-        let take = record::shoot(&mut subject, &self.settings, &order.path, &Watch(&self.shared), |picture| {
+        let mut actor = Actor::new(order.lattice.boundary.clone(), solved(order)?);
+        let take = record::shoot(&mut actor, &self.settings, &order.path, &Watch(&self.shared), |picture| {
             let preview = Arc::new(shrunk(picture));
             *self.shared.preview.lock().unwrap_or_else(PoisonError::into_inner) = Some(preview);
             self.shared.drawn.fetch_add(1, Ordering::Relaxed);

@@ -7,7 +7,7 @@ use std::time::Duration;
 use glam::{DVec2, DVec3, Vec3A};
 use image::Rgba;
 
-use super::super::Grown;
+use super::super::{Grown, Stopped};
 use crate::certificate::Shell;
 use crate::export::report::AreaReport;
 use crate::file::write_atomically;
@@ -79,14 +79,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// The growth in `seconds` as an animated picture, GIF or APNG. Ends early, and leaves nothing, when `stopped` says so.
-    pub fn write_animation(
-        &self,
-        path: &Path,
-        is_gif: bool,
-        scale: f64,
-        seconds: f32,
-        stopped: &(dyn Fn() -> bool + Sync),
-    ) -> Result<()> {
+    pub fn write_animation(&self, path: &Path, is_gif: bool, scale: f64, seconds: f32, stopped: Stopped) -> Result<()> {
         let states = self.states.iter().map(|(_, places)| places.as_slice());
         let canvas = Canvas::around(self.picture, &self.mesh, states, scale)?;
         let painter = Painter::new(self.picture, &self.mesh);

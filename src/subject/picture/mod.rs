@@ -11,7 +11,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use image::RgbImage;
 
-use super::{Found, Grown, Inspected, Look, Subject};
+use super::{Colouring, Found, Grown, Inspected, Look, Stopped, Subject};
 use crate::boundary::Boundary;
 use crate::export;
 use crate::export::report::{AreaReport, PictureReport};
@@ -181,7 +181,7 @@ impl Subject for PaintedPicture {
         Drawn::new(picture, grown).write_picture(path, look.scale, &crossings)
     }
 
-    fn write_growth(&self, grown: &Grown, look: &Look, path: &Path, stopped: &(dyn Fn() -> bool + Sync)) -> Result<()> {
+    fn write_growth(&self, grown: &Grown, look: &Look, path: &Path, stopped: Stopped) -> Result<()> {
         match check(path, Use::Growth(Kind::Picture), "the growth of a picture")? {
             "glb" => {
                 // Colours would hide the picture: the growth is the picture's own.
@@ -196,7 +196,7 @@ impl Subject for PaintedPicture {
         }
     }
 
-    fn portraits(&self, solved: &Solved, side: u32, colour: &dyn Fn(f32) -> [u8; 3]) -> Option<Result<[RgbImage; 4]>> {
+    fn portraits(&self, solved: &Solved, side: u32, colour: Colouring) -> Option<Result<[RgbImage; 4]>> {
         Some(portrait::all(self, solved, side, colour))
     }
 }

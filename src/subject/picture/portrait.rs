@@ -3,6 +3,7 @@
 use glam::DVec2;
 use image::{Rgb, RgbImage, RgbaImage};
 
+use super::super::Colouring;
 use super::drawn::{CROSSING, Drawn, crossings};
 use crate::Result;
 use crate::paint::PaintedPicture;
@@ -23,12 +24,7 @@ const MARK: f64 = 3.0;
 ///
 /// # Errors
 /// A canvas that is too large.
-pub(super) fn all(
-    painted: &PaintedPicture,
-    solved: &Solved,
-    side: u32,
-    colour: &dyn Fn(f32) -> [u8; 3],
-) -> Result<[RgbImage; 4]> {
+pub(super) fn all(painted: &PaintedPicture, solved: &Solved, side: u32, colour: Colouring) -> Result<[RgbImage; 4]> {
     let picture = &*painted.ground.picture;
     let drawn = Drawn::new(picture, &solved.into());
     let height = f64::from(picture.size.y);
@@ -83,7 +79,7 @@ fn redden_overlaps(picture: &mut RgbaImage, canvas: &Canvas, mesh: &FlatMesh, pl
 }
 
 /// The picture in the colours of its importance; its drawing shows through, so that it is still known.
-fn coloured(picture: &Picture, importance: &[f32], colour: &dyn Fn(f32) -> [u8; 3]) -> Picture {
+fn coloured(picture: &Picture, importance: &[f32], colour: Colouring) -> Picture {
     let mut image = RgbaImage::new(picture.size.x, picture.size.y);
     for (index, (pixel, &value)) in image.pixels_mut().zip(importance).enumerate() {
         let [r, g, b, alpha] = picture.pixels.wide(index).map(|channel| (channel >> 8) as u8);

@@ -16,7 +16,7 @@ use crate::voxel::blend;
 use crate::voxel::{Complex, Dimension};
 
 /// A solved domain before the camera.
-pub struct Subject {
+pub struct Actor {
     boundary: Arc<Boundary>,
     complex: Arc<Complex>,
     binding: Arc<Binding>,
@@ -49,7 +49,7 @@ enum Shot {
 /// Vertices of a state that the camera is fitted to, about: enough that none sticks out by more than the margin.
 const FITTED: usize = 4000;
 
-impl Subject {
+impl Actor {
     /// Takes a solved domain; `boundary` is what is drawn of it.
     pub fn new(boundary: Arc<Boundary>, solved: Solved) -> Self {
         let Solved { complex, binding, surfaces, film, linear, importance, outcome, .. } = solved;
