@@ -35,6 +35,15 @@ impl Kind {
         }
     }
 
+    /// Cells along the longest side and μ where nothing is said. A picture's cells are about as fine as its detail, in a
+    /// second or two.
+    pub fn usual(self) -> (u32, f32) {
+        match self {
+            Self::Body => (64, 0.5),
+            Self::Picture => (128, 1.0),
+        }
+    }
+
     /// The kind that a file's name tells; a body where it tells none.
     pub fn of_name(path: &Path) -> Self {
         Self::ALL.into_iter().find(|kind| Source(*kind).of(path).is_some()).unwrap_or(Self::Body)

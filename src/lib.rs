@@ -28,6 +28,9 @@
 //! | [`film`] | – | certified states | what is played, exported, recorded |
 //! | [`transfer`] | 3.5 | B, V'' | B' |
 //!
+//! Around it, [`subject`] is the one road from a source to its files for bodies and pictures alike, and
+//! [`mod@format`] the one table of kinds of files.
+//!
 //! [`mod@reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once, [`run`] runs it.
 //!
 //! # What is promised, and what carries it

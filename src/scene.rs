@@ -162,17 +162,8 @@ impl Draft {
     /// The same with settings that suit it: those suggested of a built-in scene, else those that are usual for its kind.
     pub fn fresh(source: &Source) -> Self {
         let (resolution, fidelity) =
-            source.entry().map_or_else(|| usual(source.kind()), |entry| (entry.resolution, entry.fidelity));
+            source.entry().map_or_else(|| source.kind().usual(), |entry| (entry.resolution, entry.fidelity));
         Self { resolution, fidelity, ..Self::of(source.clone()) }
-    }
-}
-
-/// Cells along the longest side and μ where nothing is said. A picture's cells are about as fine as its detail, in a second
-/// or two.
-pub fn usual(kind: Kind) -> (u32, f32) {
-    match kind {
-        Kind::Body => (defaults::resolution(), defaults::fidelity()),
-        Kind::Picture => (128, 1.0),
     }
 }
 
@@ -266,11 +257,6 @@ impl Scene {
         layers.filter(|(index, _)| !self.hidden.contains(index)).map(|(_, layer)| layer.clone()).collect()
     }
 
-    /// How it is solved, by the method itself.
-    pub fn settings(&self) -> Settings {
-        Settings { resolution: self.resolution, fidelity: self.fidelity, keys: self.keys, reference: None }
-    }
-
     /// Every file the scene reads.
     pub fn files(&self) -> Vec<&Path> {
         let source = match &self.source {
@@ -287,6 +273,11 @@ impl Scene {
 }
 
 impl Draft {
+    /// How it is solved, by the method itself.
+    pub fn settings(&self) -> Settings {
+        Settings { resolution: self.resolution, fidelity: self.fidelity, keys: self.keys, reference: None }
+    }
+
     fn map_files(&mut self, f: impl Fn(&Path) -> PathBuf) {
         if let Source::File(path) = &mut self.source {
             *path = f(path);

@@ -9,7 +9,7 @@ use super::{Verdict, say};
 use crate::boundary::{Attribute, Boundary};
 use crate::diagnostics::human_bytes;
 use crate::export::report::{DomainReport, InputReport, PictureReport};
-use crate::scene::{Source, usual};
+use crate::scene::Source;
 use crate::subject::{self, Inspected};
 use crate::{Error, Result};
 
@@ -53,7 +53,7 @@ struct AttributeRange {
 pub(super) fn run(options: &InspectOptions) -> Result<Verdict> {
     let found = subject::find(&options.source)?;
     only_of_pictures(found.kind(), "--background", options.background.is_some())?;
-    let resolution = options.resolution.unwrap_or(usual(found.kind()).0);
+    let resolution = options.resolution.unwrap_or(found.kind().usual().0);
     let inspection = Inspection::of(&options.source, found.inspect(options.background.as_deref(), resolution)?);
     let text = if options.json {
         serde_json::to_string_pretty(&inspection).map_err(|e| Error::Fault(format!("inspection to JSON: {e}")))?

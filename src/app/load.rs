@@ -31,7 +31,9 @@ impl Loaded {
         cancel::listen();
         let subject = subject::painted(found.open(scene)?, &scene.strokes)?;
         let mut warnings = subject.warnings();
-        warnings.extend(subject::warn_of_nothing(scene, subject.kind()));
+        if subject::asks_for_nothing(scene) {
+            warnings.push(subject.unchanged().into());
+        }
         if !options.quiet {
             warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
         }

@@ -62,6 +62,10 @@ impl Subject for Body {
         self.importance.clamped()
     }
 
+    fn unchanged(&self) -> &'static str {
+        "no importance was given, so the shape stays as it is; see --sphere in homunculus warp --help"
+    }
+
     fn content(&self) -> Content {
         Content::Body(self.boundary.clone(), self.importance.clone())
     }

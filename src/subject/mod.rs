@@ -46,6 +46,9 @@ pub trait Subject: Debug + Send + Sync {
     /// How many values of importance were moved or left out.
     fn clamped(&self) -> usize;
 
+    /// A sentence for who asks for nothing.
+    fn unchanged(&self) -> &'static str;
+
     /// What the engine takes.
     fn content(&self) -> Content;
 
@@ -229,17 +232,10 @@ pub fn under(scene: &Scene, known: Option<&Arc<dyn Subject>>) -> Result<Under<Ar
     Ok(Under { layers, hidden, base, clamp, boundary: subject.surface().clone(), stack: subject.stack(), subject })
 }
 
-/// A sentence for who asks for nothing: the subject will stay as it is.
-pub fn warn_of_nothing(scene: &Scene, kind: Kind) -> Option<String> {
-    let is_said = matches!(scene.source, Source::Gallery(_))
-        || !scene.shown_layers().is_empty()
-        || !scene.strokes.is_empty()
-        || scene.base != 1.0;
-    let (what, how) = match kind {
-        Kind::Body => ("shape", "--sphere in homunculus warp --help"),
-        Kind::Picture => ("picture", "--sphere and --regions"),
-    };
-    (!is_said).then(|| format!("no importance was given, so the {what} stays as it is; see {how}"))
+/// Whether a scene asks for nothing, so that its subject stays as it is.
+pub fn asks_for_nothing(scene: &Scene) -> bool {
+    let has_own = matches!(scene.source, Source::Gallery(_));
+    !has_own && scene.shown_layers().is_empty() && scene.strokes.is_empty() && scene.base == 1.0
 }
 
 /// What is told of a subject that has grown. `warnings`: what was told on the way.
@@ -253,4 +249,42 @@ pub fn report(
     let mut report = Report::of(scene, settings, subject.clamped(), grown.outcome, warnings);
     report.take_areas(subject.areas(grown));
     report
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paint::Fill;
+
+    fn open(name: &str) -> (Scene, Arc<dyn Subject>) {
+        let scene = Scene::new(Draft::fresh(&Source::Gallery(name.into()))).unwrap();
+        let subject = find(&scene.source).unwrap().open(&scene).unwrap();
+        (scene, subject)
+    }
+
+    #[test]
+    fn kinds_are_found_and_take_paint_and_other_layers_alike() {
+        for (name, kind) in [("hand", Kind::Body), ("magnet", Kind::Picture)] {
+            let (scene, subject) = open(name);
+            assert_eq!((subject.kind(), scene.source.kind()), (kind, kind), "{name}");
+            assert!(!asks_for_nothing(&scene), "{name} brings its own");
+            let same = painted(subject.clone(), &[]).unwrap();
+            assert!(Arc::ptr_eq(&same, &subject), "no stroke, no change");
+            let fill = Edit::Fill(Fill::All { value: 2.0 });
+            let filled = painted(subject.clone(), &[fill]).unwrap();
+            let at = |subject: &dyn Subject| match subject.content() {
+                Content::Body(boundary, stack) => stack.at_vertices(&boundary),
+                Content::Picture(flat) => {
+                    flat.importance.iter().zip(&flat.inside).filter(|(_, inside)| **inside).map(|(f, _)| *f).collect()
+                }
+            };
+            let mean = |values: Vec<f32>| values.iter().map(|f| f.ln()).sum::<f32>() / values.len() as f32;
+            assert!((mean(at(&*filled)) - 2.0_f32.ln()).abs() < 0.05, "{name} is filled with 2");
+            assert!((mean(at(&*subject)) - 2.0_f32.ln()).abs() > 0.1, "sabotage: before it was something else");
+            // The same layers again: nothing is read twice, and the surface stays the very same.
+            let again = filled.with_layers(&scene).unwrap();
+            assert_eq!(at(&*again), at(&*subject), "{name}");
+            assert!(Arc::ptr_eq(again.surface(), subject.surface()), "{name}");
+        }
+    }
 }

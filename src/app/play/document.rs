@@ -113,8 +113,7 @@ impl Document {
 
     /// How it is to be solved.
     pub fn settings(&self) -> Settings {
-        let Draft { resolution, fidelity, keys, .. } = self.draft;
-        Settings { resolution, fidelity, keys, reference: None }
+        self.draft.settings()
     }
 
     /// Changes a setting, if the scene stays valid with it.

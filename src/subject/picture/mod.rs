@@ -131,6 +131,10 @@ impl Subject for PaintedPicture {
         self.ground.field.clamped
     }
 
+    fn unchanged(&self) -> &'static str {
+        "no importance was given, so the picture stays as it is; see --sphere and --regions"
+    }
+
     fn content(&self) -> Content {
         Content::Picture(self.flat())
     }
