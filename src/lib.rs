@@ -31,8 +31,10 @@
 //! | [`film`] | – | certified states | what is played, exported, recorded |
 //! | [`transfer`] | 3.5 | B, V'' | B' |
 //!
-//! [`mod@reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once, [`run`] runs
-//! it.
+//! Around it, [`subject`] is the one road from a source to its files for bodies and pictures alike, and
+//! [`mod@format`] the one table of kinds of files.
+//!
+//! [`mod@reference`] keeps the paper's own scheme to compare with; [`schedule`] declares the order once, [`run`] runs it.
 //!
 //! # What is promised, and what carries it
 //!
@@ -50,9 +52,9 @@
 //! it.
 //!
 //! ```text
-//! error diagnostics file settings schedule
+//! error diagnostics file format settings schedule
 //! boundary voxel multigrid transfer picture importance edge certificate collision film reference run
-//! gallery paint scene export warp prelude session
+//! gallery paint scene export warp prelude subject session
 //! view record panel app
 //! ```
 //!
@@ -72,6 +74,7 @@ pub mod error;
 pub mod export;
 pub mod file;
 pub mod film;
+pub mod format;
 pub mod gallery;
 pub mod importance;
 pub mod multigrid;
@@ -88,6 +91,7 @@ pub mod scene;
 pub mod schedule;
 pub mod session;
 pub mod settings;
+pub mod subject;
 pub mod transfer;
 #[cfg(feature = "render")]
 pub mod view;

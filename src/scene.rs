@@ -23,9 +23,11 @@ use std::path::{Component, Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::file::write_atomically;
+use crate::format::Kind;
 use crate::gallery;
 use crate::importance::Layer;
 use crate::paint::Edit;
+use crate::settings::Settings;
 use crate::voxel::{check_flat_resolution, check_resolution};
 use crate::{Error, Result};
 
@@ -45,17 +47,20 @@ pub enum Source {
     Gallery(String),
 }
 
-/// What pictures' names end in; a picture by another name has the resolution of a body as its limit.
-const PICTURE_EXTENSIONS: [&str; 4] = ["png", "jpg", "jpeg", "webp"];
-
 impl Source {
-    /// Whether its name says that it is a picture.
-    pub fn is_picture(&self) -> bool {
+    /// What its name says it is; a picture by another name has the resolution of a body as its limit.
+    pub fn kind(&self) -> Kind {
         match self {
-            Self::File(path) => path
-                .extension()
-                .is_some_and(|extension| PICTURE_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known))),
-            Self::Gallery(name) => gallery::picture::list().any(|entry| entry.name == name),
+            Self::File(path) => Kind::of_name(path),
+            Self::Gallery(_) => self.entry().map_or(Kind::Body, |entry| entry.kind),
+        }
+    }
+
+    /// Its line in the gallery's list, if it is there.
+    fn entry(&self) -> Option<gallery::Entry> {
+        match self {
+            Self::File(_) => None,
+            Self::Gallery(name) => gallery::everything().find(|entry| entry.name == name),
         }
     }
 }
@@ -153,6 +158,13 @@ impl Draft {
             background: None,
         }
     }
+
+    /// The same with settings that suit it: those suggested of a built-in scene, else those that are usual for its kind.
+    pub fn fresh(source: &Source) -> Self {
+        let (resolution, fidelity) =
+            source.entry().map_or_else(|| source.kind().usual(), |entry| (entry.resolution, entry.fidelity));
+        Self { resolution, fidelity, ..Self::of(source.clone()) }
+    }
 }
 
 /// A scene that has been checked. It reads like its [`Draft`]; to change it, change a draft and check again.
@@ -177,7 +189,7 @@ impl Scene {
             let sentence = format!("scene version {} is not known; this program reads {VERSION}", draft.version);
             return Err(Error::input(sentence));
         }
-        if draft.source.is_picture() {
+        if draft.source.kind().is_flat() {
             check_flat_resolution(draft.resolution)?;
         } else {
             check_resolution(draft.resolution)?;
@@ -261,6 +273,11 @@ impl Scene {
 }
 
 impl Draft {
+    /// How it is solved, by the method itself.
+    pub fn settings(&self) -> Settings {
+        Settings { resolution: self.resolution, fidelity: self.fidelity, keys: self.keys, reference: None }
+    }
+
     fn map_files(&mut self, f: impl Fn(&Path) -> PathBuf) {
         if let Source::File(path) = &mut self.source {
             *path = f(path);

@@ -9,7 +9,7 @@ use std::{path::Path, sync::Arc};
 use common::{flat, shared, states};
 use glam::{DVec2, DVec3, UVec2};
 use homunculus::boundary::Boundary;
-use homunculus::importance::{self, field::Field};
+use homunculus::importance::{self, Field};
 use homunculus::picture::{self, Cut, FlatMesh};
 use homunculus::voxel::Flat;
 use homunculus::{

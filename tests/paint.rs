@@ -50,7 +50,7 @@ fn under(boundary: &Arc<Boundary>, layers: Vec<Layer>) -> Under {
         clamp: false,
         boundary: boundary.clone(),
         stack: Arc::new(stack),
-        ground: None,
+        subject: (),
     }
 }
 
@@ -257,7 +257,8 @@ fn what_is_saved_paints_the_same_again() {
     assert_eq!(bits(&again), bits(&painting));
     // And so does the command line.
     let stack = Stack::load(&loaded.layers, 1.0, false, &boundary, Path::new("")).unwrap();
-    let stack = paint::over(&boundary, stack, &loaded.strokes).unwrap();
+    let differences = paint::differences(&boundary, &stack, &loaded.strokes).unwrap();
+    let stack = stack.painted(differences);
     assert_eq!(stack.at_vertices(&boundary), painting.stack().at_vertices(&boundary));
 }
 
@@ -276,7 +277,8 @@ fn between_vertices_the_layers_keep_their_detail() {
 #[test]
 fn what_cannot_be_meant_is_refused() {
     let boundary = sheets(2);
-    let refusal = |edit: Edit| paint::over(&boundary, Stack::uniform(1.0).unwrap(), &[edit]).unwrap_err().to_string();
+    let refusal =
+        |edit: Edit| paint::differences(&boundary, &Stack::uniform(1.0).unwrap(), &[edit]).unwrap_err().to_string();
     let region = refusal(Edit::Fill(Fill::Region { name: "nose".into(), value: 2.0 }));
     assert_eq!(region, "stroke 0: the surface has no region `nose`; it has left, right");
     assert!(refusal(Edit::Fill(Fill::All { value: 0.0 })).contains("0.05 to 20"));

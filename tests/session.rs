@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 
 use homunculus::boundary::Boundary;
 use homunculus::importance::{Layer, Stack};
-use homunculus::session::{Phase, Session, Snapshot, Subject};
+use homunculus::session::{Phase, Session, Snapshot};
+use homunculus::subject::{Body, Subject};
 use homunculus::{run, settings::Settings};
 
 /// Longest wait for anything here; a fault of the session, not a slow machine, is what reaches it.
@@ -29,6 +30,10 @@ fn stack(boundary: &Boundary, value: f32) -> Arc<Stack> {
     Arc::new(Stack::load(&[layer], 1.0, false, boundary, Path::new("")).unwrap())
 }
 
+fn body(boundary: &Arc<Boundary>, value: f32) -> Arc<dyn Subject> {
+    Arc::new(Body { boundary: boundary.clone(), importance: stack(boundary, value) })
+}
+
 fn settings(resolution: u32) -> Settings {
     Settings { resolution, fidelity: 0.8, keys: 4, reference: None }
 }
@@ -36,8 +41,7 @@ fn settings(resolution: u32) -> Settings {
 fn open(resolution: u32, value: f32) -> (Session, Arc<Boundary>) {
     let session = Session::start().unwrap();
     let boundary = hand();
-    let importance = stack(&boundary, value);
-    session.open(Subject { boundary: boundary.clone(), importance, picture: None, settings: settings(resolution) });
+    session.open(body(&boundary, value), settings(resolution));
     (session, boundary)
 }
 
@@ -89,7 +93,7 @@ fn states_come_while_it_solves() {
 fn a_change_goes_on_from_the_last_valid_state_and_ends_certified() {
     let (session, boundary) = open(24, 2.0);
     let before = wait(&session, is_at_rest);
-    session.set_importance(stack(&boundary, 3.0));
+    session.set_importance(body(&boundary, 3.0));
     let linear = wait(&session, |s| s.version > before.version);
     assert!(
         !Arc::ptr_eq(linear.linear.as_ref().unwrap(), before.linear.as_ref().unwrap()),
@@ -121,7 +125,7 @@ fn a_change_goes_on_from_the_last_valid_state_and_ends_certified() {
 fn sabotage_an_unpainted_session_keeps_its_linear_solution() {
     let (session, boundary) = open(24, 2.0);
     let before = wait(&session, is_at_rest);
-    session.set_importance(stack(&boundary, 2.0));
+    session.set_importance(body(&boundary, 2.0));
     let after = wait(&session, |s| s.version > before.version);
     let (a, b) = (before.linear.as_ref().unwrap(), after.linear.as_ref().unwrap());
     assert!(a.iter().zip(b.iter()).all(|(a, b)| a.distance(*b) < 0.05), "the same importance has the same solution");
@@ -144,7 +148,7 @@ fn cancelling_stops_and_resuming_goes_on() {
 fn what_is_cancelled_before_it_began_waits_too() {
     let (session, boundary) = open(20, 2.0);
     wait(&session, |s| s.phase == Phase::Done);
-    session.set_importance(stack(&boundary, 3.0));
+    session.set_importance(body(&boundary, 3.0));
     session.cancel();
     let stopped = wait(&session, |s| s.phase == Phase::Stopped);
     std::thread::sleep(Duration::from_millis(500));
@@ -164,20 +168,10 @@ fn settings_and_subjects_replace_each_other() {
     session.set_settings(settings(16));
     let done = wait(&session, |s| is_at_rest(s) && s.lattice.as_ref().is_some_and(|l| l.summary.resolution == 16));
     assert_eq!(done.phase, Phase::Done);
-    session.open(Subject {
-        boundary: boundary.clone(),
-        importance: stack(&boundary, 1.5),
-        picture: None,
-        settings: settings(7),
-    });
+    session.open(body(&boundary, 1.5), settings(7));
     let failed = wait(&session, |s| s.phase == Phase::Failed);
     assert!(failed.error.as_ref().unwrap().contains("resolution 7"), "{:?}", failed.error);
-    session.open(Subject {
-        boundary: boundary.clone(),
-        importance: stack(&boundary, 1.5),
-        picture: None,
-        settings: settings(16),
-    });
+    session.open(body(&boundary, 1.5), settings(16));
     wait(&session, |s| s.phase == Phase::Done);
 }
 
@@ -187,16 +181,13 @@ fn a_solver_that_breaks_off_says_so_and_takes_the_next_order() {
     let good = hand();
     let mut broken = (*good).clone();
     broken.triangles[0] = [u32::MAX; 3];
-    let subject = |boundary: Arc<Boundary>| {
-        let importance = stack(&good, 2.0);
-        Subject { boundary, importance, picture: None, settings: settings(16) }
-    };
-    session.open(subject(Arc::new(broken)));
+    let subject = |boundary: Arc<Boundary>| Arc::new(Body { boundary, importance: stack(&good, 2.0) });
+    session.open(subject(Arc::new(broken)), settings(16));
     let failed = wait(&session, is_at_rest);
     assert_eq!(failed.phase, Phase::Failed);
     let sentence = failed.error.clone().unwrap();
     assert!(sentence.contains("the solver broke off") && !sentence.contains('\n'), "{sentence}");
-    session.open(subject(good.clone()));
+    session.open(subject(good.clone()), settings(16));
     let done = wait(&session, is_at_rest);
     assert_eq!(done.phase, Phase::Done, "{:?}", done.error);
     assert!(done.error.is_none() && session.is_answered(&done));
@@ -207,7 +198,7 @@ fn a_snapshot_knows_which_orders_it_answers() {
     let (session, boundary) = open(16, 2.0);
     let done = wait(&session, is_at_rest);
     assert!(session.is_answered(&done));
-    session.set_importance(stack(&boundary, 1.5));
+    session.set_importance(body(&boundary, 1.5));
     assert!(!session.is_answered(&done), "it is of the importance before");
     let next = wait(&session, |s| session.is_answered(s) && is_at_rest(s));
     session.set_settings(Settings { fidelity: 0.3, ..settings(16) });

@@ -3,24 +3,15 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use super::load::PictureSource;
+use super::load::only_of_pictures;
 use super::options::InspectOptions;
-use super::scene_options::PICTURE_RESOLUTION;
-use super::{Verdict, load, say};
+use super::{Verdict, say};
 use crate::boundary::{Attribute, Boundary};
 use crate::diagnostics::human_bytes;
-use crate::export::report::{DomainReport, InputReport};
-use crate::picture::Pixels;
-use crate::voxel::Flat;
+use crate::export::report::{DomainReport, InputReport, PictureReport};
+use crate::scene::Source;
+use crate::subject::{self, Inspected};
 use crate::{Error, Result};
-use crate::{
-    run,
-    run::{DomainSummary, InputSummary},
-};
-use crate::{
-    scene::Source,
-    voxel::{check_flat_resolution, check_resolution},
-};
 
 /// What `--json` prints.
 #[derive(Debug, Serialize)]
@@ -41,23 +32,6 @@ struct Inspection {
     version: &'static str,
 }
 
-/// What is in a picture.
-#[derive(Debug, Serialize)]
-struct PictureReport {
-    /// Pixels across.
-    width: u32,
-    /// Pixels down.
-    height: u32,
-    /// Bits of a channel: 8 or 16.
-    bits: u32,
-    /// Pixels of the body: opaque enough, and not background.
-    domain_pixels: usize,
-    /// Whether a colour profile goes along.
-    has_profile: bool,
-    /// Names of the regions a built-in picture has.
-    regions: Vec<String>,
-}
-
 /// The box around the vertices, in source units.
 #[derive(Debug, Serialize)]
 struct Extents {
@@ -75,24 +49,12 @@ struct AttributeRange {
     not_finite: usize,
 }
 
-/// Cells along the longest side of a body where nothing is said, as for `warp`.
-const RESOLUTION: u32 = 64;
-
 /// Looks and tells.
 pub(super) fn run(options: &InspectOptions) -> Result<Verdict> {
-    let inspection = match load::picture_source(&options.source)? {
-        Some(source) => of_picture(options, source)?,
-        None if options.background.is_some() => {
-            return Err(Error::input("--background is for pictures, and this is a mesh; leave it out"));
-        }
-        None => {
-            let resolution = options.resolution.unwrap_or(RESOLUTION);
-            check_resolution(resolution)?;
-            let boundary = load::open(&options.source)?;
-            let (input, domain) = run::inspect(&boundary, resolution)?;
-            Inspection::of(&options.source, &boundary, &input, &domain)
-        }
-    };
+    let found = subject::find(&options.source)?;
+    only_of_pictures(found.kind(), "--background", options.background.is_some())?;
+    let resolution = options.resolution.unwrap_or(found.kind().usual().0);
+    let inspection = Inspection::of(&options.source, found.inspect(options.background.as_deref(), resolution)?);
     let text = if options.json {
         serde_json::to_string_pretty(&inspection).map_err(|e| Error::Fault(format!("inspection to JSON: {e}")))?
     } else {
@@ -102,39 +64,18 @@ pub(super) fn run(options: &InspectOptions) -> Result<Verdict> {
     Ok(Verdict::Done)
 }
 
-/// Looks at a picture.
-fn of_picture(options: &InspectOptions, source: PictureSource) -> Result<Inspection> {
-    let resolution = options.resolution.unwrap_or(PICTURE_RESOLUTION);
-    check_flat_resolution(resolution)?;
-    let name = options.source.to_string();
-    let (picture, own) = source.read(&name, options.background.as_deref())?;
-    let flat = Flat { name, size: picture.size, inside: picture.domain.clone(), ..Flat::default() };
-    let (boundary, input, domain) = run::inspect_picture(&flat, resolution)?;
-    let regions = own.and_then(|field| field.regions).map_or_else(Vec::new, |regions| regions.names);
-    let report = PictureReport {
-        width: picture.size.x,
-        height: picture.size.y,
-        bits: if matches!(picture.pixels, Pixels::Sixteen(_)) { 16 } else { 8 },
-        domain_pixels: picture.domain_area(),
-        has_profile: picture.profile.is_some(),
-        regions,
-    };
-    let inspection = Inspection::of(&options.source, &boundary, &input, &domain);
-    Ok(Inspection { picture: Some(report), warnings: picture.warnings, ..inspection })
-}
-
 impl Inspection {
-    fn of(source: &Source, boundary: &Boundary, input: &InputSummary, domain: &DomainSummary) -> Self {
+    fn of(source: &Source, Inspected { boundary, input, domain, picture, warnings }: Inspected) -> Self {
         Self {
             source: source.to_string(),
-            input: input.into(),
-            extents: Extents::of(boundary),
-            picture: None,
+            input: (&input).into(),
+            extents: Extents::of(&boundary),
+            picture,
             attributes: boundary.attributes.iter().map(AttributeRange::of).collect(),
             uv: boundary.vertex_uvs().is_some_and(|uvs| uvs.iter().any(Option::is_some)),
             colours: boundary.base_colours().is_some(),
-            domain: domain.into(),
-            warnings: boundary.warnings.clone(),
+            domain: (&domain).into(),
+            warnings,
             version: env!("CARGO_PKG_VERSION"),
         }
     }

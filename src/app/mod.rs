@@ -10,7 +10,6 @@
 //! | 3 | finished but not certified; the result lies next to its report |
 
 mod cancel;
-mod flat;
 mod gallery;
 mod inspect;
 mod load;
@@ -20,8 +19,7 @@ mod outputs;
 pub mod play;
 mod progress;
 #[cfg(feature = "record")]
-pub mod record;
-pub mod scene_options;
+mod record;
 mod warp;
 
 use std::ffi::OsString;
@@ -67,11 +65,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn run(order: Order) -> Result<Verdict> {
     match order {
-        Order::Warp(order) => warp::run(*order),
+        Order::Warp(order) => warp::run(&order),
         Order::Inspect(order) => inspect::run(&order),
         Order::Gallery(options) => gallery::run(&options),
         #[cfg(feature = "record")]
-        Order::Record(order) => record::run(*order),
+        Order::Record(order) => record::run(&order),
         #[cfg(feature = "window")]
         Order::Play(order) => play::run(&order),
     }

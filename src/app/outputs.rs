@@ -2,75 +2,77 @@
 
 use std::path::{Path, PathBuf};
 
+use super::cancel;
 use super::options::WarpOptions;
 use crate::export::report::{self, Report};
+use crate::format::{Kind, Use};
 use crate::scene::{Scene, Source};
+use crate::subject::{Grown, Look, Subject};
 use crate::{Error, Result};
-
-/// Formats a mesh can be written in.
-const MESH_EXTENSIONS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
-
-/// Formats the growth of a picture can be written in.
-const FLAT_GROWTH_EXTENSIONS: [&str; 4] = ["glb", "apng", "png", "gif"];
 
 /// The files to write.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Outputs {
     /// The warped mesh or picture.
-    pub mesh: Option<PathBuf>,
-    pub growth: Option<PathBuf>,
-    pub report: Option<PathBuf>,
-    pub scene: Option<PathBuf>,
+    result: Option<PathBuf>,
+    growth: Option<PathBuf>,
+    report: Option<PathBuf>,
+    scene: Option<PathBuf>,
 }
 
 impl Outputs {
-    /// The files that the options name; a warped mesh beside the user where they name none.
+    /// The files that the options name; the result beside the user where they name none.
     ///
     /// # Errors
     /// If a file could not be written at the end, or would overwrite an input or another output.
-    pub fn of(options: &WarpOptions, scene: &Scene, is_picture: bool) -> Result<Self> {
+    pub fn of(options: &WarpOptions, scene: &Scene, kind: Kind) -> Result<Self> {
         let nothing_named = options.output.is_none() && options.growth.is_none() && options.report.is_none();
         let outputs = Self {
-            mesh: options.output.clone().or_else(|| nothing_named.then(|| default_result(&scene.source, is_picture))),
+            result: options.output.clone().or_else(|| nothing_named.then(|| default_result(&scene.source, kind))),
             growth: options.growth.clone(),
             report: options.report.clone(),
             scene: options.scene.save_scene.clone(),
         };
-        check_extension(&outputs.mesh, "-o", if is_picture { &["png"] } else { &MESH_EXTENSIONS })?;
-        check_extension(&outputs.growth, "--growth", if is_picture { &FLAT_GROWTH_EXTENSIONS } else { &["glb"] })?;
-        check_extension(&outputs.report, "--report", &["json"])?;
-        check_extension(&outputs.scene, "--save-scene", &["ron"])?;
-
+        check_extension(&outputs.result, "-o", Use::Result(kind))?;
+        check_extension(&outputs.growth, "--growth", Use::Growth(kind))?;
+        check_extension(&outputs.report, "--report", Use::Report)?;
+        check_extension(&outputs.scene, "--save-scene", Use::Scene)?;
         check_places(scene, outputs.all())?;
         Ok(outputs)
     }
 
-    /// A report is due for a result that is not certified: where it was ordered, else beside the result.
-    pub fn report_beside(&self) -> Option<PathBuf> {
-        let beside = || self.mesh.as_ref().or(self.growth.as_ref()).map(|path| path.with_extension("report.json"));
-        self.report.clone().or_else(beside)
-    }
-
-    /// Writes report and scene where they are due: the same for bodies and pictures. Returns where.
+    /// Writes what was ordered, each file whole or not at all; a report also where the result is not certified, beside it.
+    /// Returns where.
     ///
     /// # Errors
-    /// If one cannot be written.
-    pub fn write_accounts(&self, scene: &Scene, report: &Report) -> Result<Vec<PathBuf>> {
-        let mut written = Vec::new();
-        let report_path = if report.certified() { self.report.clone() } else { self.report_beside() };
-        if let Some(path) = report_path {
-            report::write(report, &path)?;
-            written.push(path);
+    /// If one cannot be written, or the user stops it.
+    pub fn write(
+        &self,
+        subject: &dyn Subject,
+        grown: &Grown,
+        look: &Look,
+        scene: &Scene,
+        report: &Report,
+    ) -> Result<Vec<PathBuf>> {
+        let beside = || self.result.as_ref().or(self.growth.as_ref()).map(|path| path.with_extension("report.json"));
+        let due = self.report.clone().or_else(|| if report.certified() { None } else { beside() });
+        if let Some(path) = &self.result {
+            subject.write_result(grown, look, path)?;
+        }
+        if let Some(path) = &self.growth {
+            subject.write_growth(grown, look, path, &cancel::asked)?;
+        }
+        if let Some(path) = &due {
+            report::write(report, path)?;
         }
         if let Some(path) = &self.scene {
             scene.save(path)?;
-            written.push(path.clone());
         }
-        Ok(written)
+        Ok([&self.result, &self.growth, &due, &self.scene].into_iter().flatten().cloned().collect())
     }
 
     fn all(&self) -> impl Iterator<Item = &Path> {
-        [&self.mesh, &self.growth, &self.report, &self.scene].into_iter().flatten().map(PathBuf::as_path)
+        [&self.result, &self.growth, &self.report, &self.scene].into_iter().flatten().map(PathBuf::as_path)
     }
 }
 
@@ -89,33 +91,45 @@ pub(super) fn check_places<'a>(scene: &Scene, paths: impl Iterator<Item = &'a Pa
     Ok(())
 }
 
-/// `NAME-warped.EXT` in the working directory, in the input's format where it can be written; of a picture PNG.
-fn default_result(source: &Source, is_picture: bool) -> PathBuf {
+/// `NAME-warped.EXT` in the working directory, in the input's format where it can be written.
+fn default_result(source: &Source, kind: Kind) -> PathBuf {
+    let written = Use::Result(kind).extensions();
     let (name, extension) = match source {
         Source::Gallery(name) => (name.clone(), None),
         Source::File(path) => {
             let name = path.file_stem().map_or_else(|| "mesh".into(), |stem| stem.to_string_lossy().into_owned());
-            (name, extension(path))
+            let is_it = |known: &&&str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(known));
+            (name, written.iter().find(is_it))
         }
     };
-    let written = extension.filter(|e| MESH_EXTENSIONS.contains(&e.as_str())).unwrap_or_else(|| "glb".into());
-    let extension = if is_picture { "png".into() } else { written };
+    let extension = extension.or(written.first()).copied().unwrap_or_default();
     // A gallery name comes from the user: only its last part may become a file name.
-    let name = name.rsplit(['/', '\\']).next().unwrap_or("mesh").to_owned();
+    let name = name.rsplit(['/', '\\']).next().unwrap_or("mesh");
     PathBuf::from(format!("{name}-warped.{extension}"))
 }
 
-fn extension(path: &Path) -> Option<String> {
-    Some(path.extension()?.to_str()?.to_ascii_lowercase())
+/// Whether the file's name says that it is for this use.
+pub(super) fn check_extension(path: &Option<PathBuf>, option: &str, what: Use) -> Result<()> {
+    match path {
+        Some(path) if what.of(path).is_none() => {
+            Err(Error::in_file(path, format!("{option} wants a file that ends in {}", what.listed())))
+        }
+        _ => Ok(()),
+    }
 }
 
-pub(super) fn check_extension(path: &Option<PathBuf>, option: &str, known: &[&str]) -> Result<()> {
-    let Some(path) = path else { return Ok(()) };
-    if extension(path).is_some_and(|e| known.contains(&e.as_str())) {
-        return Ok(());
-    }
-    let known = known.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(", ");
-    Err(Error::in_file(path, format!("{option} wants a file that ends in {known}")))
+/// One line for a person.
+pub(super) fn summary(report: &Report, written: &[PathBuf]) -> String {
+    let certificate = &report.certificate;
+    let verdict = if certificate.certified { "certified" } else { "NOT CERTIFIED" };
+    let files = written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
+    format!(
+        "{verdict}: {} inverted, {} crossings in {} frames; size error p95 {:.1} %; written: {files}",
+        certificate.inverted,
+        certificate.crossings,
+        certificate.frames.len(),
+        report.fidelity.p95 * 100.0,
+    )
 }
 
 /// Whether a file can come to lie there.

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::format::{self, Use};
 
 /// Largest file that is read, bytes. A mesh of this size has tens of millions of vertices, ten times what a solve can hold;
 /// lower would refuse scans that can be decimated here, higher would take more memory than a workstation has.
@@ -28,12 +29,12 @@ pub(crate) enum Kind {
 impl Kind {
     /// By the extension of a path, in any case.
     pub fn of_extension(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+        match Use::Source(format::Kind::Body).of(path)? {
             "glb" | "gltf" => Some(Self::Gltf),
             "obj" => Some(Self::Obj),
             "ply" => Some(Self::Ply),
             "stl" => Some(Self::Stl),
-            "off" | "coff" | "noff" => Some(Self::Off),
+            "off" => Some(Self::Off),
             _ => None,
         }
     }

@@ -28,10 +28,11 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use crate::boundary::Boundary;
 use crate::boundary::source::srgb_from_linear;
-use crate::boundary::{Boundary, Kind};
 use crate::error::{Error, Result};
 use crate::file::write_atomically;
+use crate::format::{Kind, Use};
 pub use growth::{GrowthFrame, growth};
 
 /// What the writers of all formats are given.
@@ -58,18 +59,16 @@ pub(crate) struct Surface<'a> {
 pub fn mesh(boundary: &Boundary, positions: &[DVec3], colours: Option<&[[f32; 3]]>, path: &Path) -> Result<()> {
     let surface = Surface { boundary, positions, colours };
     surface.check()?;
-    let is_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf"));
-    let bytes = match Kind::of_extension(path).filter(|_| !is_json) {
-        Some(Kind::Gltf) => glb::write(&surface, path)?,
-        Some(Kind::Obj) => obj::write(&surface, path)?,
-        Some(Kind::Ply) => ply::write(&surface),
-        Some(Kind::Stl) => stl::write(&surface, path)?,
-        Some(Kind::Off) => off::write(&surface),
-        None => {
-            return Err(Error::in_file(
-                path,
-                "meshes are written as .glb, .obj, .ply, .stl or .off; choose one of these",
-            ));
+    let what = Use::Result(Kind::Body);
+    let bytes = match what.of(path) {
+        Some("glb") => glb::write(&surface, path)?,
+        Some("obj") => obj::write(&surface, path)?,
+        Some("ply") => ply::write(&surface),
+        Some("stl") => stl::write(&surface, path)?,
+        Some("off") => off::write(&surface),
+        _ => {
+            let sentence = format!("meshes are written as {}; choose one of these", what.listed());
+            return Err(Error::in_file(path, sentence));
         }
     };
     write_atomically(path, |file| file.write_all(&bytes))

@@ -9,8 +9,7 @@ use serde_json::{Map, Value};
 use crate::collision::areas::LEAST_CELLS;
 use crate::diagnostics::peak_memory_bytes;
 use crate::file::write_atomically;
-use crate::importance::field::Field;
-use crate::importance::{RegionArea, median_error, worst};
+use crate::importance::{Field, RegionArea, median_error, worst};
 use crate::{Error, Result};
 use crate::{
     run::{Counts, DomainSummary, InputSummary, Outcome},
@@ -196,6 +195,23 @@ pub struct AreaReport {
     pub unresolved: Vec<String>,
     /// Each region.
     pub regions: Vec<RegionArea>,
+}
+
+/// What is in a picture.
+#[derive(Debug, Serialize)]
+pub struct PictureReport {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Bits of a channel: 8 or 16.
+    pub bits: u32,
+    /// Pixels of the body: opaque enough, and not background.
+    pub domain_pixels: usize,
+    /// Whether a colour profile goes along.
+    pub has_profile: bool,
+    /// Names of the regions a built-in picture has.
+    pub regions: Vec<String>,
 }
 
 /// The region that misses its area most.

@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 use crate::boundary::{Boundary, Regions};
 use crate::error::{Error, Result};
+use crate::format::Kind;
 use implicit::Mesh;
 
 /// A model of the gallery: its surface and which vertex belongs how much to which region.
@@ -36,6 +37,8 @@ pub struct Model {
 pub struct Entry {
     /// What to ask for.
     pub name: &'static str,
+    /// What it is warped as.
+    pub kind: Kind,
     /// What it is.
     pub one_line: &'static str,
     /// Where its numbers or its idea come from.
@@ -64,6 +67,7 @@ pub fn list() -> &'static [Entry] {
     LIST.get_or_init(|| {
         let homunculi = human::scenes().iter().map(|s| Entry {
             name: s.scene,
+            kind: Kind::Body,
             one_line: s.one_line,
             reference: s.reference,
             resolution: 96,
@@ -72,6 +76,7 @@ pub fn list() -> &'static [Entry] {
         });
         let hand = Entry {
             name: "hand",
+            kind: Kind::Body,
             one_line: "a spread hand whose fingertips ask for three times their size: a quick demonstration",
             reference: "modelled here",
             resolution: 64,
@@ -80,6 +85,7 @@ pub fn list() -> &'static [Entry] {
         };
         let figures = models::figures().iter().map(|f| Entry {
             name: f.name,
+            kind: Kind::Body,
             one_line: f.one_line,
             reference: f.reference,
             resolution: f.resolution,

@@ -1,5 +1,6 @@
 //! The door: which values may be importance.
 
+use super::Range;
 use super::layer::{CLAMP_MAX, CLAMP_MIN};
 use crate::{Error, Result};
 
@@ -55,6 +56,39 @@ impl Admission {
             ));
         }
         warnings
+    }
+}
+
+/// What reading layers has found so far, on surfaces and in pictures alike.
+#[derive(Debug)]
+pub(super) struct Reading {
+    pub admission: Admission,
+    /// Sentences for the user.
+    pub warnings: Vec<String>,
+}
+
+impl Reading {
+    /// Begins with the importance below all layers; the second is its logarithm.
+    pub fn new(base: f32, clamp: bool) -> Result<(Self, f64)> {
+        let mut reading = Self { admission: Admission { clamp, ..Admission::default() }, warnings: Vec::new() };
+        let base = reading.admit(base, || "base".into())?;
+        Ok((reading, f64::from(base).ln()))
+    }
+
+    /// Admits a value that was written by hand; NaN keeps.
+    pub fn admit(&mut self, value: f32, place: impl FnOnce() -> String) -> Result<f32> {
+        Ok(self.admission.admit(value, &value.to_string(), place)?.unwrap_or(1.0))
+    }
+
+    /// The same of both ends of a range.
+    pub fn admit_range(&mut self, (low, high): Range, place: impl Fn() -> String) -> Result<(f64, f64)> {
+        Ok((f64::from(self.admit(low, &place)?), f64::from(self.admit(high, &place)?)))
+    }
+
+    /// What is to be told, and how many values were moved or left out.
+    pub fn finish(mut self) -> (Vec<String>, usize) {
+        self.warnings.extend(self.admission.warnings());
+        (self.warnings, self.admission.clamped)
     }
 }
 

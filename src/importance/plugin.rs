@@ -44,6 +44,11 @@ impl Plugin for ImportancePlugin {
     }
 }
 
+type Prepared<'a> =
+    (Entity, &'a DomainBoundary, &'a DomainImportance, &'a Lattice, &'a mut Spreading, Has<Interactive>);
+
+type Renewed = Or<(Changed<DomainImportance>, Added<Spreading>)>;
+
 type Unprepared = (Changed<DomainImportance>, Without<DomainPicture>, Without<Spreading>);
 
 fn prepare(
@@ -61,11 +66,7 @@ fn prepare(
     }
 }
 
-type Asked<'a> = (Entity, &'a DomainBoundary, &'a DomainImportance, &'a Lattice, &'a mut Spreading, Has<Interactive>);
-
-type AskedAnew = Or<(Changed<DomainImportance>, Added<Spreading>)>;
-
-fn spread(mut commands: Commands, mut domains: Query<Asked, AskedAnew>, mut watch: ResMut<Stopwatch>) {
+fn spread(mut commands: Commands, mut domains: Query<Prepared, Renewed>, mut watch: ResMut<Stopwatch>) {
     for (entity, DomainBoundary(boundary), DomainImportance(stack), Lattice(complex), mut spreading, is_kept) in
         &mut domains
     {

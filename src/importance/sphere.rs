@@ -1,34 +1,81 @@
-//! A dab of importance: a sphere with a smooth edge.
+//! A dab of importance: a sphere with a smooth edge, in a picture a disc.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+
+use super::field::Pixels;
+use super::stack::{OnSurface, Place, Surface};
+use crate::boundary::Boundary;
+use crate::{Error, Result};
+
+/// The dab on a surface.
+pub(super) fn on_surface(centre: [f64; 3], radius: f64, value: f32, surface: &mut Surface) -> Result<Sphere> {
+    let centre = DVec3::from_array(centre);
+    if !(centre.is_finite() && radius > 0.0 && radius.is_finite()) {
+        let sentence = format!("sphere at {centre}: the centre must be finite and the radius {radius} > 0");
+        return Err(Error::input(sentence));
+    }
+    let Surface { boundary, reading, .. } = surface;
+    let value = reading.admit(value, || format!("sphere at {centre}"))?;
+    let sphere = Sphere { centre, radius, ln_value: f64::from(value).ln() };
+    if !sphere.touches(&boundary.positions, &boundary.triangles) {
+        let sentence = format!("sphere at {centre}: nothing of the surface lies within its radius {radius}");
+        reading.warnings.push(sentence);
+    }
+    Ok(sphere)
+}
+
+/// The dab in a picture: its third coordinate means nothing.
+pub(super) fn on_pixels([x, y, _]: [f64; 3], radius: f64, value: f32, pixels: &mut Pixels) -> Result<()> {
+    let centre = DVec2::new(x, y);
+    if !(centre.is_finite() && radius > 0.0 && radius.is_finite()) {
+        let sentence = format!("disc at {centre}: the centre must be finite and the radius {radius} > 0");
+        return Err(Error::input(sentence));
+    }
+    let value = f64::from(pixels.reading.admit(value, || format!("disc at {centre}"))?);
+    let (domain, width) = (&pixels.picture.domain, pixels.picture.size.x as usize);
+    let weight = |index: usize| {
+        let place = DVec2::new((index % width) as f64 + 0.5, (index / width) as f64 + 0.5);
+        falloff(place.distance(centre) / radius)
+    };
+    if !(0..domain.len()).into_par_iter().any(|index| domain[index] && weight(index) > 0.0) {
+        let sentence = format!("disc at {centre}: nothing of the body lies within its radius {radius}");
+        pixels.reading.warnings.push(sentence);
+    }
+    pixels.blend(|index, below| below + weight(index) * (value.ln() - below));
+    Ok(())
+}
 
 /// A sphere, ready to be evaluated.
 #[derive(Debug, Clone)]
 pub(super) struct Sphere {
     /// Source units.
-    pub centre: DVec3,
+    centre: DVec3,
     /// Source units, > 0.
-    pub radius: f64,
+    radius: f64,
     /// ln of the importance at the centre.
-    pub ln_value: f64,
+    ln_value: f64,
 }
 
 impl Sphere {
     /// `ln f` at `point`, where it is `below` without this sphere: f ← f^(1−w) · value^w.
-    pub fn over(&self, below: f64, point: DVec3) -> f64 {
+    fn at(&self, below: f64, point: DVec3) -> f64 {
         let weight = falloff(point.distance(self.centre) / self.radius);
         below + weight * (self.ln_value - below)
     }
-}
 
-impl Sphere {
     /// Whether any of these triangles comes within the radius.
-    pub fn touches(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> bool {
+    fn touches(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> bool {
         triangles.par_iter().any(|corners| {
             let corners = corners.map(|vertex| positions[vertex as usize]);
             closest_point(corners, self.centre).distance(self.centre) < self.radius
         })
+    }
+}
+
+impl OnSurface for Sphere {
+    fn over(&self, below: f64, _: &Boundary, place: &Place) -> f64 {
+        self.at(below, place.position)
     }
 }
 
@@ -108,9 +155,9 @@ mod tests {
     #[test]
     fn blends_in_the_logarithm() {
         let sphere = Sphere { centre: DVec3::X, radius: 2.0, ln_value: 4f64.ln() };
-        assert_eq!(sphere.over(0.3, DVec3::X), 4f64.ln());
-        assert_eq!(sphere.over(0.3, DVec3::new(3.0, 0.0, 0.0)), 0.3);
-        let half = sphere.over(0.0, DVec3::new(2.0, 0.0, 0.0)).exp();
+        assert_eq!(sphere.at(0.3, DVec3::X), 4f64.ln());
+        assert_eq!(sphere.at(0.3, DVec3::new(3.0, 0.0, 0.0)), 0.3);
+        let half = sphere.at(0.0, DVec3::new(2.0, 0.0, 0.0)).exp();
         assert!((half - 2.0).abs() < 1e-12, "half-way from 1 to 4 in the logarithm is 2, not {half}");
     }
 

@@ -1,93 +1,23 @@
-//! Importance from CSV tables: `vertex,importance`, or `vertex,region` with `region,importance`.
+//! CSV tables of two columns: `vertex,importance`, `vertex,region`, `region,importance`.
 //!
 //! The first row names the columns; others are ignored. Vertices are numbered from 0 in the order of the mesh file.
 //! Rows are counted as an editor or a spreadsheet shows them: the header is row 1.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use super::admission::Admission;
-use crate::boundary::Regions;
 use crate::{Error, Result};
 
 /// One row of a two-column table.
-struct Row {
+pub(super) struct Row {
     /// As an editor counts, the header is 1.
-    number: u64,
-    key: String,
-    value: String,
-}
-
-/// `[vertices]` importance, `None` where the table lists no value.
-pub(super) fn values(path: &Path, vertices: usize, admission: &mut Admission) -> Result<Vec<Option<f32>>> {
-    let mut found = vec![None; vertices];
-    let mut first_row = vec![0; vertices];
-    for row in rows(path, "vertex", "importance")? {
-        let vertex = vertex_of(path, &row, &mut first_row)?;
-        found[vertex] = importance_of(path, &row, admission)?;
-    }
-    Ok(found)
-}
-
-/// The regions of the first table, and `[vertices]` the importance which the second gives to each vertex's region.
-pub(super) fn regions(
-    regions_path: &Path,
-    values_path: &Path,
-    vertices: usize,
-    admission: &mut Admission,
-) -> Result<(Regions, Vec<Option<f32>>)> {
-    let mut regions = Regions { names: Vec::new(), of_vertex: vec![u32::MAX; vertices] };
-    let mut index_of = HashMap::new();
-    let mut named_at = Vec::new();
-    let mut first_row = vec![0; vertices];
-    for row in rows(regions_path, "vertex", "region")? {
-        let vertex = vertex_of(regions_path, &row, &mut first_row)?;
-        let next = regions.names.len() as u32;
-        let region = *index_of.entry(row.value.clone()).or_insert(next);
-        if region == next {
-            regions.names.push(row.value);
-            named_at.push(row.number);
-        }
-        regions.of_vertex[vertex] = region;
-    }
-
-    let mut worth: Vec<Option<(u64, Option<f32>)>> = vec![None; regions.names.len()];
-    for row in rows(values_path, "region", "importance")? {
-        let Some(&region) = index_of.get(&row.key) else {
-            let sentence = format!(
-                "row {}: unknown region `{}`: {} has no vertex of that region; correct the name or remove the row",
-                row.number,
-                row.key,
-                regions_path.display()
-            );
-            return Err(Error::in_file(values_path, sentence));
-        };
-        let place = &mut worth[region as usize];
-        if let Some((first, _)) = place {
-            let sentence = format!(
-                "row {}: region `{}` was already given on row {first}; keep one of the two",
-                row.number, row.key
-            );
-            return Err(Error::in_file(values_path, sentence));
-        }
-        *place = Some((row.number, importance_of(values_path, &row, admission)?));
-    }
-    if let Some(orphan) = worth.iter().position(Option::is_none) {
-        let sentence = format!(
-            "region `{}` has no value, but {} uses it on row {}; add a row for it",
-            regions.names[orphan],
-            regions_path.display(),
-            named_at[orphan]
-        );
-        return Err(Error::in_file(values_path, sentence));
-    }
-    let value_of = |region: &u32| worth.get(*region as usize).copied().flatten().and_then(|(_, value)| value);
-    let found = regions.of_vertex.iter().map(value_of).collect();
-    Ok((regions, found))
+    pub number: u64,
+    pub key: String,
+    pub value: String,
 }
 
 /// The rows of a table, by the names of two columns.
-fn rows(path: &Path, key: &str, value: &str) -> Result<Vec<Row>> {
+pub(super) fn rows(path: &Path, key: &str, value: &str) -> Result<Vec<Row>> {
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, e))?;
     let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers().map_err(|e| unreadable(path, e))?.clone();
@@ -121,7 +51,7 @@ fn rows(path: &Path, key: &str, value: &str) -> Result<Vec<Row>> {
 }
 
 /// The vertex a row is about, which no row before it was about.
-fn vertex_of(path: &Path, row: &Row, first_row: &mut [u64]) -> Result<usize> {
+pub(super) fn vertex_of(path: &Path, row: &Row, first_row: &mut [u64]) -> Result<usize> {
     let refuse = |problem: String| Err(Error::in_file(path, format!("row {}: {problem}", row.number)));
     let Ok(vertex) = row.key.parse::<usize>() else {
         return refuse(format!("vertex `{}` is not a whole number; vertices are counted from 0", row.key));
@@ -139,7 +69,7 @@ fn vertex_of(path: &Path, row: &Row, first_row: &mut [u64]) -> Result<usize> {
     }
 }
 
-fn importance_of(path: &Path, row: &Row, admission: &mut Admission) -> Result<Option<f32>> {
+pub(super) fn importance_of(path: &Path, row: &Row, admission: &mut Admission) -> Result<Option<f32>> {
     let place = || format!("{}: row {}", path.display(), row.number);
     match row.value.parse() {
         Ok(value) => admission.admit(value, &row.value, place),
@@ -147,6 +77,17 @@ fn importance_of(path: &Path, row: &Row, admission: &mut Admission) -> Result<Op
             Err(Error::input(format!("{}: importance `{}` is not a number; write it as 1.5", place(), row.value)))
         }
     }
+}
+
+/// Whether the first line of a table that is no comment names a column.
+///
+/// # Errors
+/// If it cannot be read.
+pub(super) fn has_column(path: &Path, name: &str) -> Result<bool> {
+    let text = std::fs::read(path).map_err(|e| Error::reading(path, e))?;
+    let text = String::from_utf8_lossy(&text);
+    let header = text.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
+    Ok(header.split(',').any(|column| column.trim().trim_start_matches('\u{feff}') == name))
 }
 
 fn unreadable(path: &Path, error: csv::Error) -> Error {

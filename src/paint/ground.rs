@@ -6,14 +6,13 @@
 //! each pixel: pixels keep all their detail, as vertices do on bodies. The engine, the report and the command line are
 //! given pixels, painted or not.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::boundary::{Boundary, Regions};
-use crate::importance::Stack;
-use crate::importance::field::Field;
+use crate::importance::{Field, Stack};
 use crate::picture::Picture;
 use crate::transfer::flat_boundary;
 use crate::voxel::{Complex, Flat, Grid};
@@ -34,11 +33,11 @@ pub struct Ground {
     pub field: Arc<Field>,
     /// Picture and field as the engine takes them.
     pub flat: Arc<Flat>,
-    /// What is drawn of the picture, PNG.
-    pub texture: Arc<Vec<u8>>,
     /// The mesh that strokes are kept on, with the regions of the field.
     pub mesh: Arc<Boundary>,
     vertices: Arc<Vertices>,
+    /// Made when it is first drawn.
+    texture: Arc<OnceLock<Vec<u8>>>,
 }
 
 /// Where the mesh's vertices are.
@@ -65,18 +64,29 @@ impl Ground {
     /// Prepares a picture with what its layers say.
     ///
     /// # Errors
-    /// A picture without a body; a fault where its pixels cannot be encoded.
+    /// A picture without a body.
     pub fn new(name: &str, picture: Picture, own: Option<Arc<Field>>, field: Field) -> Result<Self> {
         let size = picture.size;
         let bare = Flat { name: name.into(), size, inside: picture.domain.clone(), ..Flat::default() };
         let complex = bare.lattice(CELLS.min(size.max_element()))?;
         let mesh = Arc::new(flat_boundary(name, &complex, size));
         let vertices = Arc::new(Vertices::of(&complex, &mesh)?);
-        let texture = Arc::new(picture.body_png()?);
         let nothing = Field { values: Vec::new(), regions: None, ..field.clone() };
         let (picture, flat) = (Arc::new(picture), Arc::new(bare));
-        let ground = Self { picture, own, field: Arc::new(nothing), flat, texture, mesh, vertices };
+        let ground = Self { picture, own, field: Arc::new(nothing), flat, mesh, vertices, texture: Arc::default() };
         Ok(ground.with_field(field))
+    }
+
+    /// What is drawn of the picture, PNG.
+    ///
+    /// # Errors
+    /// A fault where its pixels cannot be encoded.
+    pub fn texture(&self) -> Result<&[u8]> {
+        if let Some(made) = self.texture.get() {
+            return Ok(made);
+        }
+        let png = self.picture.body_png()?;
+        Ok(self.texture.get_or_init(|| png))
     }
 
     /// The same picture with other layers.
@@ -232,7 +242,7 @@ impl Vertices {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::importance::field::Layer;
+    use crate::importance::Layer;
     use crate::picture::{Cut, read_bytes};
     use std::path::Path;
 
@@ -249,7 +259,7 @@ mod tests {
 
     #[test]
     fn paint_multiplies_what_layers_say_and_leaves_the_rest_to_the_bit() {
-        let ground = ground(&[Layer::Disc { centre: [10.0, 20.0], radius: 8.0, value: 3.0 }]);
+        let ground = ground(&[Layer::Sphere { centre: [10.0, 20.0, 0.0], radius: 8.0, value: 3.0 }]);
         let nothing = PaintedPicture { ground: ground.clone(), differences: Vec::new() };
         assert_eq!(nothing.flat().importance, ground.field.values);
         // Twice as much to the right of the gap.
@@ -267,7 +277,7 @@ mod tests {
 
     #[test]
     fn vertices_know_what_is_under_them_and_values_are_read_between_them() {
-        let ground = ground(&[Layer::Disc { centre: [10.0, 20.0], radius: 15.0, value: 3.0 }]);
+        let ground = ground(&[Layer::Sphere { centre: [10.0, 20.0, 0.0], radius: 15.0, value: 3.0 }]);
         let values = ground.stack().at_vertices(&ground.mesh);
         let middle = ground.vertex_at(DVec3::new(10.0, 20.0, 0.0)) as usize;
         assert!((values[middle] - 3.0).abs() < 0.1, "{}", values[middle]);

@@ -25,29 +25,11 @@ pub use painting::{Painting, Under};
 
 use crate::{Result, boundary::Boundary, importance::Stack};
 
-/// A scene's strokes over its layers.
+/// `[vertices]` what a scene's strokes add to ln f over its layers.
 ///
 /// # Errors
 /// Names the stroke, the value and its range, or the region that is not there.
-pub fn over(boundary: &Boundary, stack: Stack, strokes: &[Edit]) -> Result<Stack> {
-    if strokes.is_empty() {
-        return Ok(stack);
-    }
-    let differences = differences(boundary, &stack, strokes)?;
-    Ok(stack.painted(differences))
-}
-
-/// The same on a picture.
-///
-/// # Errors
-/// As [`over`].
-pub fn over_picture(ground: Ground, strokes: &[Edit]) -> Result<PaintedPicture> {
-    let differences = differences(&ground.mesh, &ground.stack(), strokes)?;
-    Ok(PaintedPicture { ground, differences })
-}
-
-/// `[vertices]` what strokes add to ln f over layers.
-fn differences(boundary: &Boundary, stack: &Stack, strokes: &[Edit]) -> Result<Vec<f64>> {
+pub fn differences(boundary: &Boundary, stack: &Stack, strokes: &[Edit]) -> Result<Vec<f64>> {
     let canvas = Canvas::new(boundary);
     for (index, edit) in strokes.iter().enumerate() {
         edit.check(index, &canvas)?;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Brush, Canvas, Dab, Edit, Ground, PaintedPicture,
+    Brush, Canvas, Dab, Edit,
     apply::{Live, apply, replay},
 };
 use crate::{
@@ -11,9 +11,9 @@ use crate::{
     importance::{Layer, Stack},
 };
 
-/// The layers below all edits, as said and as read.
+/// The layers below all edits, as said and as read. `S` is what they were read for: it goes along through undo.
 #[derive(Debug, Clone)]
-pub struct Under {
+pub struct Under<S = ()> {
     /// As a scene says them.
     pub layers: Vec<Layer>,
     /// Indices of the layers that are left out.
@@ -22,21 +22,21 @@ pub struct Under {
     pub base: f32,
     /// Whether values out of range are brought into it.
     pub clamp: bool,
-    /// The surface they were read for.
+    /// The surface that is painted on.
     pub boundary: Arc<Boundary>,
-    /// All of it, read and checked.
+    /// What all of it says there, read and checked.
     pub stack: Arc<Stack>,
-    /// The picture, where it is one that is painted on; the surface is then its mesh.
-    pub ground: Option<Ground>,
+    /// What they were read for, with what they say of it.
+    pub subject: S,
 }
 
 /// One step of undo.
 #[derive(Debug, Clone)]
-enum Change {
+enum Change<S> {
     /// An edit and the values it changed: vertex, ln f before, ln f after.
     Edit(Edit, Vec<(u32, f64, f64)>),
     /// Other layers: before and after.
-    Under(Box<[Under; 2]>),
+    Under(Box<[Under<S>; 2]>),
 }
 
 /// Steps of undo that are kept; a step holds what it changed, 20 bytes a vertex.
@@ -44,23 +44,23 @@ const MOST_UNDO: usize = 1000;
 
 /// Importance that is being painted.
 #[derive(Debug, Clone)]
-pub struct Painting {
+pub struct Painting<S = ()> {
     canvas: Arc<Canvas>,
-    under: Under,
+    under: Under<S>,
     /// `[vertices]` what the layers say, ln f.
     ln_under: Vec<f64>,
     edits: Vec<Edit>,
     /// `[vertices]` ln f.
     ln: Vec<f64>,
-    undo: Vec<Change>,
-    redo: Vec<Change>,
+    undo: Vec<Change<S>>,
+    redo: Vec<Change<S>>,
     stroke: Option<Live>,
     version: u64,
 }
 
-impl Painting {
+impl<S: Clone> Painting<S> {
     /// Opens layers with edits over them, which have been [checked](Edit::check).
-    pub fn new(canvas: Arc<Canvas>, under: Under, edits: Vec<Edit>) -> Self {
+    pub fn new(canvas: Arc<Canvas>, under: Under<S>, edits: Vec<Edit>) -> Self {
         let ln_under = logarithms(&under);
         let ln = replay(&canvas, &ln_under, &edits);
         Self { canvas, under, ln_under, edits, ln, undo: Vec::new(), redo: Vec::new(), stroke: None, version: 0 }
@@ -72,7 +72,7 @@ impl Painting {
     }
 
     /// The layers.
-    pub fn under(&self) -> &Under {
+    pub fn under(&self) -> &Under<S> {
         &self.under
     }
 
@@ -99,23 +99,16 @@ impl Painting {
     /// Importance as a function of the surface: the layers with what was painted over them.
     pub fn stack(&self) -> Stack {
         let stack = Stack::clone(&self.under.stack);
-        if self.is_bare() { stack } else { stack.painted(self.differences()) }
+        match self.differences() {
+            Some(differences) => stack.painted(differences),
+            None => stack,
+        }
     }
 
-    /// The picture with what was painted on it, if it is a picture.
-    pub fn picture(&self) -> Option<PaintedPicture> {
-        let ground = self.under.ground.clone()?;
-        let differences = if self.is_bare() { Vec::new() } else { self.differences() };
-        Some(PaintedPicture { ground, differences })
-    }
-
-    fn is_bare(&self) -> bool {
-        self.edits.is_empty() && self.stroke.is_none()
-    }
-
-    /// `[vertices]` what was painted over the layers, in ln f.
-    fn differences(&self) -> Vec<f64> {
-        self.ln.iter().zip(&self.ln_under).map(|(ln, under)| ln - under).collect()
+    /// `[vertices]` what was painted over the layers, in ln f; `None` if nothing was.
+    pub fn differences(&self) -> Option<Vec<f64>> {
+        let is_bare = self.edits.is_empty() && self.stroke.is_none();
+        (!is_bare).then(|| self.ln.iter().zip(&self.ln_under).map(|(ln, under)| ln - under).collect())
     }
 
     /// Begins a stroke; one that was being made ends.
@@ -173,7 +166,7 @@ impl Painting {
     }
 
     /// Puts other layers below the edits.
-    pub fn set_under(&mut self, under: Under) {
+    pub fn set_under(&mut self, under: Under<S>) {
         self.end();
         let before = std::mem::replace(&mut self.under, under);
         self.note(Change::Under(Box::new([before, self.under.clone()])));
@@ -237,7 +230,7 @@ impl Painting {
         self.version += 1;
     }
 
-    fn note(&mut self, change: Change) {
+    fn note(&mut self, change: Change<S>) {
         self.redo.clear();
         self.undo.push(change);
         if self.undo.len() > MOST_UNDO {
@@ -258,6 +251,6 @@ impl Painting {
     }
 }
 
-fn logarithms(under: &Under) -> Vec<f64> {
+fn logarithms<S>(under: &Under<S>) -> Vec<f64> {
     under.stack.at_vertices(&under.boundary).iter().map(|f| f64::from(*f).ln()).collect()
 }

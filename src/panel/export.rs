@@ -3,6 +3,7 @@
 use bevy_egui::egui::{self, Context, Ui};
 
 use super::{Asked, Choice, Facts, Wish, theme};
+use crate::format::Use;
 
 /// How results are written.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,12 +38,6 @@ impl Default for ExportChoice {
     }
 }
 
-/// Formats the growth of a picture can be written in.
-const PICTURE_GROWTH_FORMATS: [&str; 3] = ["gif", "apng", "glb"];
-
-/// Formats a mesh can be written in.
-pub const MESH_FORMATS: [&str; 5] = ["glb", "obj", "ply", "stl", "off"];
-
 pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>) {
     let mut is_open = choice.export.is_open;
     theme::dialog(ctx, "Export", &mut is_open).show(ctx, |ui| {
@@ -60,62 +55,46 @@ pub(super) fn show(ctx: &Context, facts: &Facts, choice: &mut Choice, wishes: &m
 }
 
 fn content(ui: &mut Ui, facts: &Facts, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
-    if facts.is_picture() {
-        picture(ui, export, wishes);
-    } else {
-        mesh(ui, export, wishes);
-    }
+    let (kind, is_flat) = (facts.kind(), facts.is_flat());
+    let (of_result, of_growth) = match is_flat {
+        true => {
+            ("PNG with alpha, as deep as the input", "GIF or animated PNG; GLB is a textured mesh for any glTF viewer")
+        }
+        false => (
+            "Same vertices, same order, same materials as the input",
+            "GLB with morph targets: plays in any glTF viewer",
+        ),
+    };
+    part(ui, &format!("Warped {}", kind.word()), of_result, Asked::ExportMesh, wishes, |ui| {
+        formats(ui, "format", Use::Result(kind), &mut export.format);
+        if is_flat {
+            ui.add(egui::DragValue::new(&mut export.scale).range(0.01..=64.0).speed(0.01).prefix("×"))
+                .on_hover_text("Pixels of the result along one of the input, of the growth too");
+        } else {
+            ui.checkbox(&mut export.colour_mesh, "colours of importance");
+        }
+    });
+    part(ui, "Growth animation", of_growth, Asked::ExportGrowth, wishes, |ui| {
+        ui.add(egui::DragValue::new(&mut export.seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
+            .on_hover_text("How long it grows");
+        formats(ui, "growth", Use::Growth(kind), &mut export.picture_growth);
+        if !is_flat {
+            ui.checkbox(&mut export.colour_growth, "colours of importance");
+        }
+    });
     part(ui, "Report", "JSON: what was asked, achieved and proven", Asked::ExportReport, wishes, |_| {});
 }
 
-fn seconds(ui: &mut Ui, seconds: &mut f32) {
-    ui.add(egui::DragValue::new(seconds).range(0.1..=3600.0).speed(0.05).suffix(" s"))
-        .on_hover_text("How long it grows");
-}
-
-fn picture(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
-    part(ui, "Warped picture", "PNG with alpha, as deep as the input", Asked::ExportMesh, wishes, |ui| {
-        ui.add(egui::DragValue::new(&mut export.scale).range(0.01..=64.0).speed(0.01).prefix("×"))
-            .on_hover_text("Pixels of the result along one of the input, of the growth too");
-    });
-    let hint = "GIF or animated PNG; GLB is a textured mesh for any glTF viewer";
-    part(ui, "Growth animation", hint, Asked::ExportGrowth, wishes, |ui| {
-        seconds(ui, &mut export.seconds);
-        egui::ComboBox::from_id_salt("growth").width(60.0).selected_text(export.picture_growth).show_ui(ui, |ui| {
-            for format in PICTURE_GROWTH_FORMATS {
-                ui.selectable_value(&mut export.picture_growth, format, format);
+/// The formats there are, where there is a choice.
+fn formats(ui: &mut Ui, id: &str, what: Use, chosen: &mut &'static str) {
+    let known = what.extensions();
+    if known.len() > 1 {
+        egui::ComboBox::from_id_salt(id).width(60.0).selected_text(*chosen).show_ui(ui, |ui| {
+            for format in known {
+                ui.selectable_value(chosen, format, format);
             }
         });
-    });
-}
-
-fn mesh(ui: &mut Ui, export: &mut ExportChoice, wishes: &mut Vec<Wish>) {
-    part(
-        ui,
-        "Warped mesh",
-        "Same vertices, same order, same materials as the input",
-        Asked::ExportMesh,
-        wishes,
-        |ui| {
-            egui::ComboBox::from_id_salt("format").width(60.0).selected_text(export.format).show_ui(ui, |ui| {
-                for format in MESH_FORMATS {
-                    ui.selectable_value(&mut export.format, format, format);
-                }
-            });
-            ui.checkbox(&mut export.colour_mesh, "colours of importance");
-        },
-    );
-    part(
-        ui,
-        "Growth animation",
-        "GLB with morph targets: plays in any glTF viewer",
-        Asked::ExportGrowth,
-        wishes,
-        |ui| {
-            seconds(ui, &mut export.seconds);
-            ui.checkbox(&mut export.colour_growth, "colours of importance");
-        },
-    );
+    }
 }
 
 fn part(ui: &mut Ui, name: &str, hint: &str, asked: Asked, wishes: &mut Vec<Wish>, settings: impl FnOnce(&mut Ui)) {

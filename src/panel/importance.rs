@@ -4,8 +4,10 @@ use bevy_egui::egui::{self, Ui};
 
 use super::{Asked, Choice, Facts, Tool, Wish, theme};
 use crate::{
-    importance::{CLAMP_MAX, CLAMP_MIN, Layer},
+    format::Kind,
+    importance::{CLAMP_MAX, CLAMP_MIN, Layer, Offered},
     paint::{Action, Axis, Falloff, Fill},
+    subject::Painting,
 };
 
 /// A slider for a size factor: even in ratio.
@@ -53,7 +55,7 @@ fn brush(ui: &mut Ui, facts: &Facts, choice: &mut Choice) {
         theme::choices(ui, &mut brush.falloff, &all);
     });
     theme::row(ui, "Mirror", "Paints the other side of the middle as well", |ui| {
-        let axes = if facts.is_picture() { 2 } else { 3 };
+        let axes = if facts.is_flat() { 2 } else { 3 };
         for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate().take(axes) {
             ui.toggle_value(&mut brush.mirror[axis], name);
         }
@@ -96,7 +98,7 @@ fn fill(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut Vec<Wish>)
         });
         theme::row(ui, "Along", "Fills the gradient in along an axis", |ui| {
             let [from, to] = choice.gradient;
-            let axes = if facts.is_picture() { 2 } else { 3 };
+            let axes = if facts.is_flat() { 2 } else { 3 };
             for (axis, name) in [(Axis::X, "X"), (Axis::Y, "Y"), (Axis::Z, "Z")].into_iter().take(axes) {
                 if ui.button(name).clicked() {
                     wishes.push(Wish::Fill(Fill::Gradient { axis, from, to }));
@@ -123,7 +125,7 @@ fn layers(ui: &mut Ui, facts: &Facts, wishes: &mut Vec<Wish>) {
             }
             let width = ui.available_width() - 32.0;
             ui.allocate_ui(egui::vec2(width, 20.0), |ui| {
-                let (name, hint) = describe(layer);
+                let (name, hint) = layer.describe();
                 ui.add(egui::Label::new(name).truncate()).on_hover_text(hint);
             });
             if ui.small_button("✖").on_hover_text("Removes the layer").clicked() {
@@ -131,10 +133,9 @@ fn layers(ui: &mut Ui, facts: &Facts, wishes: &mut Vec<Wish>) {
             }
         });
     }
-    let is_picture = facts.is_picture();
     // What is said of a built-in picture takes the place of its own; a model's lies below.
     let has_own = matches!(draft.source, crate::scene::Source::Gallery(_));
-    if has_own && (!is_picture || draft.layers.is_empty()) {
+    if has_own && (!facts.is_flat() || draft.layers.is_empty()) {
         ui.label(theme::weak("the model's own importance"));
     }
     theme::row(ui, "Base", "Importance where nothing else is said", |ui| {
@@ -142,33 +143,16 @@ fn layers(ui: &mut Ui, facts: &Facts, wishes: &mut Vec<Wish>) {
         if ui.add(egui::DragValue::new(&mut base).range(CLAMP_MIN..=CLAMP_MAX).speed(0.01).prefix("×")).changed() {
             wishes.push(Wish::SetBase(base));
         }
-        add(ui, painting, is_picture, wishes);
+        add(ui, painting, facts.kind(), wishes);
     });
 }
 
-/// Layers of a body: name, what is asked for, hint.
-const BODY_LAYERS: [(&str, Asked, &str); 3] = [
-    ("Table of values…", Asked::Values, "CSV: vertex,importance; for a built-in model region,importance"),
-    ("Tables of regions…", Asked::Regions, "CSV: vertex,region, then CSV: region,importance"),
-    ("Picture…", Asked::Image, "Laid over the surface by its texture coordinates: black ×0.5, white ×2"),
-];
-
-/// Layers of a picture.
-const PICTURE_LAYERS: [(&str, Asked, &str); 2] = [
-    (
-        "Regions…",
-        Asked::Regions,
-        "A picture of ids as grey values, then CSV: region,importance, or region,value to become area",
-    ),
-    ("Map…", Asked::Image, "A picture of the same size: black ×0.5, white ×2"),
-];
-
-fn add(ui: &mut Ui, painting: &crate::paint::Painting, is_picture: bool, wishes: &mut Vec<Wish>) {
+fn add(ui: &mut Ui, painting: &Painting, kind: Kind, wishes: &mut Vec<Wish>) {
     ui.menu_button("Add layer…", |ui| {
-        let layers = if is_picture { &PICTURE_LAYERS[..] } else { &BODY_LAYERS[..] };
-        for &(name, asked, hint) in layers {
-            if ui.button(name).on_hover_text(hint).clicked() {
-                wishes.push(Wish::Ask(asked));
+        for offered in Offered::ALL {
+            let Some(offer) = offered.offer(kind) else { continue };
+            if ui.button(offer.name).on_hover_text(offer.hint).clicked() {
+                wishes.push(Wish::Ask(Asked::Layer(offered)));
             }
         }
         let attributes = &painting.under().boundary.attributes;
@@ -187,25 +171,4 @@ fn add(ui: &mut Ui, painting: &crate::paint::Painting, is_picture: bool, wishes:
             });
         });
     });
-}
-
-/// What a layer is, short and long.
-fn describe(layer: &Layer) -> (String, String) {
-    let file = |path: &std::path::Path| {
-        path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
-    };
-    match layer {
-        Layer::Sphere { centre: [x, y, z], radius, value } => {
-            (format!("sphere ×{value}"), format!("at {x:.4}, {y:.4}, {z:.4}, radius {radius:.4}"))
-        }
-        Layer::Attribute { name, range } => {
-            let range = range.map_or_else(|| "as it is".into(), |(low, high)| format!("×{low} to ×{high}"));
-            (format!("attribute {name}"), range)
-        }
-        Layer::Values { path } => (format!("values {}", file(path)), path.display().to_string()),
-        Layer::Regions { regions, values, .. } => {
-            (format!("regions {}", file(values)), format!("{}\n{}", regions.display(), values.display()))
-        }
-        Layer::Image { path, .. } => (format!("picture {}", file(path)), path.display().to_string()),
-    }
 }

@@ -21,7 +21,7 @@ pub mod theme;
 mod top;
 mod view;
 
-pub use export::{ExportChoice, MESH_FORMATS};
+pub use export::ExportChoice;
 pub use gallery::card_id;
 pub use player::{Easing, Player, Repeat};
 pub use prompt::Prompt;
@@ -35,10 +35,12 @@ use bevy_egui::egui::{self, Ui};
 use glam::DVec3;
 
 use crate::{
-    importance::Layer,
-    paint::{Brush, Fill, Painting},
+    format::Kind,
+    importance::{Layer, Offered},
+    paint::{Brush, Fill},
     scene::{Draft, Source},
     session::Snapshot,
+    subject::Painting,
     view::{Axis, Legend, Mode},
 };
 
@@ -78,9 +80,14 @@ pub struct Facts<'a> {
 }
 
 impl Facts<'_> {
-    /// Whether a picture is open.
-    pub fn is_picture(&self) -> bool {
-        self.painting.is_some_and(|painting| painting.under().ground.is_some())
+    /// What is open is of this kind; a body where nothing is.
+    pub fn kind(&self) -> Kind {
+        self.painting.map_or(Kind::Body, |painting| painting.under().subject.kind())
+    }
+
+    /// Whether what is open lies in the plane.
+    pub fn is_flat(&self) -> bool {
+        self.kind().is_flat()
     }
 }
 
@@ -187,12 +194,8 @@ impl Default for Choice {
 pub enum Asked {
     /// Mesh, picture or scene, to be opened.
     Open,
-    /// CSV with importance of vertices or regions.
-    Values,
-    /// Two CSV: which vertex belongs to which region, then what regions are worth.
-    Regions,
-    /// A picture to lay over the surface.
-    Image,
+    /// The files of a layer.
+    Layer(Offered),
     /// Where to save the scene.
     SaveScene,
     /// Where to write the warped mesh; the extension says the format.

@@ -18,7 +18,10 @@ pub struct Prompt {
 impl Prompt {
     /// Asks for what a dialog would have asked for, beginning with a proposal.
     pub fn new(asked: Asked, proposed: String) -> Self {
-        let paths = if asked == Asked::Regions { vec![String::new(); 2] } else { vec![proposed] };
+        let paths = match asked {
+            Asked::Layer(offered) => vec![String::new(); offered.words().files.len()],
+            _ => vec![proposed],
+        };
         Self { asked, paths }
     }
 
@@ -30,16 +33,18 @@ impl Prompt {
 }
 
 /// Title, names of the paths, and what the button does.
-fn words(asked: Asked) -> (&'static str, &'static [&'static str], &'static str) {
-    match asked {
-        Asked::Open => ("Open", &["File"], "Open"),
-        Asked::Values => ("Importance of vertices or regions", &["Table"], "Add"),
-        Asked::Image => ("Importance as a picture", &["Picture"], "Add"),
-        Asked::Regions => ("Regions and what they are worth", &["Regions", "Values"], "Add"),
-        Asked::SaveScene => ("Save the scene", &["File"], "Save"),
-        Asked::ExportMesh | Asked::ExportGrowth | Asked::ExportReport => ("Export", &["File"], "Save"),
-        Asked::ExportFilm => ("Where to record the film", &["File"], "Choose"),
-    }
+fn words(asked: Asked) -> (&'static str, Vec<&'static str>, &'static str) {
+    let (title, verb) = match asked {
+        Asked::Layer(offered) => {
+            let offer = offered.words();
+            return (offer.title, offer.files.iter().map(|file| file.name).collect(), "Add");
+        }
+        Asked::Open => ("Open", "Open"),
+        Asked::SaveScene => ("Save the scene", "Save"),
+        Asked::ExportMesh | Asked::ExportGrowth | Asked::ExportReport => ("Export", "Save"),
+        Asked::ExportFilm => ("Where to record the film", "Choose"),
+    };
+    (title, vec!["File"], verb)
 }
 
 pub(super) fn show(ctx: &Context, choice: &mut Choice, wishes: &mut Vec<Wish>) {

@@ -129,7 +129,7 @@ fn form(ui: &mut Ui, facts: &Facts, record: &mut RecordChoice, wishes: &mut Vec<
             }
         },
     );
-    time(ui, draft, facts.is_picture());
+    time(ui, draft, facts.is_flat());
     picture(ui, draft);
     ui.add_space(8.0);
     let checked = Settings::new(draft.clone())
@@ -161,7 +161,7 @@ fn form(ui: &mut Ui, facts: &Facts, record: &mut RecordChoice, wishes: &mut Vec<
     }
 }
 
-fn time(ui: &mut Ui, draft: &mut Draft, is_picture: bool) {
+fn time(ui: &mut Ui, draft: &mut Draft, is_flat: bool) {
     theme::row(ui, "Length", "Seconds of the whole film, rests and the way back included; frames per second", |ui| {
         ui.add(egui::DragValue::new(&mut draft.seconds).range(0.1..=600.0).speed(0.05).max_decimals(2).suffix(" s"));
         ui.add(egui::DragValue::new(&mut draft.fps).range(1..=60).suffix(" fps"));
@@ -176,7 +176,7 @@ fn time(ui: &mut Ui, draft: &mut Draft, is_picture: bool) {
         theme::choices(ui, &mut draft.ease, &all);
     });
     // A picture is looked at straight on.
-    if is_picture {
+    if is_flat {
         return;
     }
     theme::row(ui, "Turntable", "Turns about the vertical axis over the film; negative turns the other way", |ui| {

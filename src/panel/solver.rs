@@ -45,7 +45,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, pending: &mut Pending, wishes: &m
             "Cells along the longest side, 8 to 256, of a picture 8 to 512: finer shows more and takes longer",
             |ui| {
                 settled(ui, &mut pending.resolution, draft.resolution, |ui, value| {
-                    let most = if facts.is_picture() { MAX_FLAT_RESOLUTION } else { MAX_RESOLUTION };
+                    let most = if facts.is_flat() { MAX_FLAT_RESOLUTION } else { MAX_RESOLUTION };
                     ui.add(egui::Slider::new(value, MIN_RESOLUTION..=most).logarithmic(true))
                 })
             },
@@ -72,22 +72,19 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, pending: &mut Pending, wishes: &m
             if let Some(lattice) = &facts.snapshot.lattice {
                 let domain = &lattice.summary;
                 let memory = human_bytes(memory_estimate(domain.cells as f64));
-                let is_picture = facts.is_picture();
+                let is_flat = facts.is_flat();
                 let cell_size = domain.cell_size;
                 let rows = [
                     ("Surface", format!("{} triangles", group(lattice.boundary.triangles.len()))),
                     ("Cells", group(domain.cells)),
                     ("Nodes", group(domain.nodes)),
                     ("Elements", group(domain.elements)),
-                    (
-                        "Cell size",
-                        if is_picture { format!("{cell_size:.2} pixels") } else { format!("{cell_size:.4}") },
-                    ),
+                    ("Cell size", if is_flat { format!("{cell_size:.2} pixels") } else { format!("{cell_size:.4}") }),
                     ("Welds", format!("{} suspected", domain.suspected_welds)),
                     ("Memory", format!("about {memory}")),
                 ];
                 // The cells of a picture glue nothing.
-                for (name, value) in rows.into_iter().filter(|(name, _)| !(is_picture && *name == "Welds")) {
+                for (name, value) in rows.into_iter().filter(|(name, _)| !(is_flat && *name == "Welds")) {
                     theme::row(ui, name, "", |ui| ui.label(value));
                 }
             }

@@ -32,13 +32,13 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut
             });
         }
         ui.add_space(2.0);
-        let is_picture = facts.is_picture();
+        let is_flat = facts.is_flat();
         egui::Grid::new("shown").num_columns(2).spacing(ui.spacing().item_spacing).show(ui, |ui| {
             ui.checkbox(&mut choice.ghost, "Rest shape").on_hover_text("The shape before warping, translucent");
             ui.checkbox(&mut choice.size_legend, "Sizes")
                 .on_hover_text("Cubes or discs of ×½, ×1, ×2, ×4 to compare with");
             ui.end_row();
-            if !is_picture {
+            if !is_flat {
                 ui.checkbox(&mut choice.turntable, "Turntable").on_hover_text("Turns by itself  (T)");
                 ui.checkbox(&mut choice.orthographic, "Parallel").on_hover_text("Parallels stay parallel");
                 ui.end_row();
@@ -52,7 +52,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts, choice: &mut Choice, wishes: &mut
             ];
             theme::choices(ui, &mut choice.compare, &all);
         });
-        if is_picture {
+        if is_flat {
             theme::row(ui, "Look at", "", |ui| {
                 if ui.button("all").on_hover_text("Everything  (F)").clicked() {
                     wishes.push(Wish::Frame);

@@ -2,7 +2,7 @@
 
 use bevy::math::{EulerRot, Quat, Vec2, Vec3};
 
-/// Space around the subject, as a factor of the distance.
+/// Space around the actor, as a factor of the distance.
 const MARGIN: f32 = 1.07;
 
 /// Rounds of centring; each leaves a hundredth of the error.

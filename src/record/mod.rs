@@ -12,6 +12,7 @@
 //!   Apache-2.0). WebM and others go through the program `ffmpeg` where it is installed. See [`encode`].
 //! - A film takes its name when all of it is written, together with its [`sidecar`]; stopped, it leaves nothing.
 
+mod actor;
 pub mod encode;
 mod lens;
 mod overlay;
@@ -19,15 +20,14 @@ mod plan;
 mod settings;
 mod sidecar;
 mod stage;
-mod subject;
 mod wall;
 mod writer;
 
+pub use actor::Actor;
 pub(crate) use lens::Sight;
 pub use plan::{FramePlan, Mix, plan};
 pub use settings::{Camera, Draft, Ease, MAX_FRAMES, MAX_SIDE, MAX_TITLE, MIN_SIDE, Settings, View};
 pub use sidecar::{Account, FrameAccount, SettingsAccount, sidecar};
-pub use subject::Subject;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -71,7 +71,7 @@ pub fn check(settings: &Settings, path: &Path) -> Result<Adapter> {
 /// [`Error::Cancelled`] when the observer says so, [`Error::Input`] as [`check`], [`Error::File`] where the system refuses.
 /// Nothing is left then.
 pub fn shoot(
-    subject: &mut Subject,
+    actor: &mut Actor,
     settings: &Settings,
     path: &Path,
     observer: &dyn Observer,
@@ -79,7 +79,7 @@ pub fn shoot(
 ) -> Result<Take> {
     let adapter = check(settings, path)?;
     let format = Format::of(path, settings.still.is_some())?;
-    let (reel, keyframes) = (reel(settings), subject.lambdas());
+    let (reel, keyframes) = (reel(settings), actor.lambdas());
     let plan = plan(settings, &keyframes);
     let progress = |done: usize| {
         let lambda = plan.get(done).map_or(1.0, |frame| frame.lambda);
@@ -88,11 +88,11 @@ pub fn shoot(
         if observer.cancelled() { Err(Error::Cancelled) } else { Ok(()) }
     };
     progress(0)?;
-    let mut stage = Stage::new(subject, settings, &plan, &adapter)?;
+    let mut stage = Stage::new(actor, settings, &plan, &adapter)?;
     let mut samples = Vec::new();
     for frame in format.samples(plan.len()) {
-        let findings = findings(subject, settings, &plan[frame]);
-        samples.push(stage.picture(subject, &plan[frame], &findings)?);
+        let findings = findings(actor, settings, &plan[frame]);
+        samples.push(stage.picture(actor, &plan[frame], &findings)?);
         progress(0)?;
     }
     let mut writer = Writer::new(format.begin(path, &reel, &samples)?)?;
@@ -101,10 +101,10 @@ pub fn shoot(
     let mut seconds = 0.0;
     for (done, frame) in plan.iter().enumerate() {
         progress(done)?;
-        let found = findings(subject, settings, frame);
+        let found = findings(actor, settings, frame);
         frames.push(FrameAccount::new(frame, found.growth.as_ref(), found.classic.as_ref()));
         let start = Instant::now();
-        let picture = stage.picture(subject, frame, &found)?;
+        let picture = stage.picture(actor, frame, &found)?;
         seconds += start.elapsed().as_secs_f64();
         preview(&picture);
         writer.frame(picture)?;
@@ -134,14 +134,14 @@ fn reel(settings: &Settings) -> Reel {
     }
 }
 
-fn findings(subject: &mut Subject, settings: &Settings, frame: &FramePlan) -> Findings {
+fn findings(actor: &mut Actor, settings: &Settings, frame: &FramePlan) -> Findings {
     let shows_classic = matches!(settings.view, View::Classic | View::Compare);
-    let classic = shows_classic.then(|| subject.classic_certificate(frame.lambda));
+    let classic = shows_classic.then(|| actor.classic_certificate(frame.lambda));
     let is_faulty = classic.as_ref().is_some_and(|found| !found.certified());
     Findings {
-        growth: (settings.view != View::Classic).then(|| subject.certificate(frame.mix)),
+        growth: (settings.view != View::Classic).then(|| actor.certificate(frame.mix)),
         classic,
-        faulty: is_faulty.then(|| subject.classic_faults(frame.lambda)),
+        faulty: is_faulty.then(|| actor.classic_faults(frame.lambda)),
     }
 }
 

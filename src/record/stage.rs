@@ -1,4 +1,4 @@
-//! The studio with the subject in it: one picture for each frame of the plan.
+//! The studio with the actor in it: one picture for each frame of the plan.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use image::RgbaImage;
 use super::lens::{Lens, Sight};
 use super::overlay::{Caption, Slate, Writing};
 use super::wall::Wall;
-use super::{FramePlan, Settings, Subject, View};
+use super::{Actor, FramePlan, Settings, View};
 use crate::Result;
 use crate::certificate::Certificate;
 use crate::view::headless::{Renderer, Shown};
@@ -52,11 +52,11 @@ pub(super) struct Stage {
 
 impl Stage {
     /// Sets it up for a film.
-    pub fn new(subject: &Subject, settings: &Settings, plan: &[FramePlan], adapter: &Adapter) -> Result<Self> {
-        let is_picture = subject.is_picture();
+    pub fn new(actor: &Actor, settings: &Settings, plan: &[FramePlan], adapter: &Adapter) -> Result<Self> {
+        let is_picture = actor.is_picture();
         let mut renderer = Renderer::new([settings.width, settings.height], quality(settings, adapter, is_picture))?;
-        let looks = looks(subject, settings.view);
-        let shown = |looks: &Looks| Shown { looks: looks.clone(), ..Shown::new(subject.body()) };
+        let looks = looks(actor, settings.view);
+        let shown = |looks: &Looks| Shown { looks: looks.clone(), ..Shown::new(actor.body()) };
         let shows_classic = matches!(settings.view, View::Classic | View::Compare);
         // In grey, on which red tells.
         let classic = shows_classic.then(|| renderer.show(shown(&Looks::default())));
@@ -78,18 +78,18 @@ impl Stage {
             orthographic: is_picture,
             ..Orbit::default()
         };
-        let (lens, apart) = fit(subject, settings, plan, &orbit);
+        let (lens, apart) = fit(actor, settings, plan, &orbit);
         let lens = Lens { distance: lens.distance / settings.camera.zoom, ..lens };
         let mut stage = Self { renderer, growth, classic, slate, lens, orbit, apart };
         // Shaders, letters and textures come with the first picture, which is not shown.
         if let Some(first) = plan.first() {
-            stage.picture(subject, first, &Findings::default())?;
+            stage.picture(actor, first, &Findings::default())?;
         }
         Ok(stage)
     }
 
     /// The picture of a frame.
-    pub fn picture(&mut self, subject: &Subject, frame: &FramePlan, findings: &Findings) -> Result<RgbaImage> {
+    pub fn picture(&mut self, actor: &Actor, frame: &FramePlan, findings: &Findings) -> Result<RgbaImage> {
         let orbit = Orbit {
             yaw: self.orbit.yaw + frame.turn,
             target: self.lens.target,
@@ -102,7 +102,7 @@ impl Stage {
         // Side by side as the camera sees them, wherever it stands.
         let aside = orbit.rotation() * Vec3::X * (0.5 * self.apart);
         for (entity, pose, offset) in
-            [(self.classic, subject.classic_pose(frame.lambda), -aside), (self.growth, subject.pose(frame.mix), aside)]
+            [(self.classic, actor.classic_pose(frame.lambda), -aside), (self.growth, actor.pose(frame.mix), aside)]
         {
             let Some(entity) = entity else { continue };
             self.renderer.pose(entity, pose);
@@ -146,21 +146,21 @@ fn quality(settings: &Settings, adapter: &Adapter, is_picture: bool) -> Quality 
     if is_fine { Quality { supersampling: 2, ..quality } } else { quality }
 }
 
-fn looks(subject: &Subject, view: View) -> Looks {
+fn looks(actor: &Actor, view: View) -> Looks {
     let (mode, voxels) = match view {
         // Beside itself a picture is best told by what it shows.
-        View::Classic | View::Compare if subject.is_picture() => (Mode::Plain, None),
+        View::Classic | View::Compare if actor.is_picture() => (Mode::Plain, None),
         View::Importance | View::Classic | View::Compare => (Mode::Importance, None),
         View::Plain => (Mode::Plain, None),
-        View::Voxels => (Mode::Voxels(VoxelColour::Importance), Some(subject.node_importance().clone())),
+        View::Voxels => (Mode::Voxels(VoxelColour::Importance), Some(actor.node_importance().clone())),
     };
-    Looks { mode, importance: Some(subject.importance().clone()), voxels, ..Looks::default() }
+    Looks { mode, importance: Some(actor.importance().clone()), voxels, ..Looks::default() }
 }
 
 /// Where the camera stands, and how far apart two bodies are.
-fn fit(subject: &Subject, settings: &Settings, plan: &[FramePlan], orbit: &Orbit) -> (Lens, f32) {
-    if subject.is_picture() {
-        return hang(subject, settings);
+fn fit(actor: &Actor, settings: &Settings, plan: &[FramePlan], orbit: &Orbit) -> (Lens, f32) {
+    if actor.is_picture() {
+        return hang(actor, settings);
     }
     let every = plan.len().div_ceil(DIRECTIONS).max(1);
     let mut yaws: Vec<f32> = plan.iter().step_by(every).map(|frame| orbit.yaw + frame.turn).collect();
@@ -171,7 +171,7 @@ fn fit(subject: &Subject, settings: &Settings, plan: &[FramePlan], orbit: &Orbit
     let aspect = settings.width as f32 / settings.height as f32;
     let opening = FIELD_OF_VIEW;
     let sight = Sight { yaws: &yaws, pitch: orbit.pitch, opening, aspect };
-    let [certified, classic] = subject.reach();
+    let [certified, classic] = actor.reach();
     match settings.view {
         View::Classic => (sight.fit(&classic), 0.0),
         View::Compare => {
@@ -188,8 +188,8 @@ fn fit(subject: &Subject, settings: &Settings, plan: &[FramePlan], orbit: &Orbit
 }
 
 /// The same for a picture.
-fn hang(subject: &Subject, settings: &Settings) -> (Lens, f32) {
-    let [certified, classic] = subject.reach();
+fn hang(actor: &Actor, settings: &Settings) -> (Lens, f32) {
+    let [certified, classic] = actor.reach();
     let shown = match settings.view {
         View::Classic => classic,
         View::Compare => certified.into_iter().chain(classic).collect(),
@@ -200,7 +200,7 @@ fn hang(subject: &Subject, settings: &Settings) -> (Lens, f32) {
     let wall = Wall {
         size: [settings.width, settings.height],
         title: settings.title.is_some(),
-        legend: settings.legend && looks(subject, settings.view).legend().is_some(),
+        legend: settings.legend && looks(actor, settings.view).legend().is_some(),
         pictures: if settings.view == View::Compare { 2 } else { 1 },
     };
     wall.hang(low, high)

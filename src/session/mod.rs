@@ -26,36 +26,16 @@ use std::{
     time::Instant,
 };
 
-use crate::{boundary::Boundary, importance::Stack, paint::PaintedPicture, settings::Settings};
-
-/// What to solve.
-#[derive(Debug, Clone)]
-pub struct Subject {
-    /// B.
-    pub boundary: Arc<Boundary>,
-    /// F; of a picture nothing, as it brings its own.
-    pub importance: Arc<Stack>,
-    /// The picture with what was painted on it, where it is one; `boundary` is then the mesh that is painted on.
-    pub picture: Option<Arc<PaintedPicture>>,
-    /// How.
-    pub settings: Settings,
-}
+use crate::{settings::Settings, subject::Subject};
 
 /// What the solver is told; what changes the result, with its number.
 enum Order {
-    Open(Subject, u64),
-    Importance(Asking, Instant, u64),
+    Open(Arc<dyn Subject>, Settings, u64),
+    Importance(Arc<dyn Subject>, Instant, u64),
     Settings(Settings, u64),
     Cancel,
     Resume,
     Shutdown,
-}
-
-/// How a change of importance is told.
-#[derive(Clone)]
-enum Asking {
-    Surface(Arc<Stack>),
-    Picture(Arc<PaintedPicture>),
 }
 
 /// A solver in the background. Dropping it ends its thread.
@@ -102,19 +82,14 @@ impl Session {
     }
 
     /// Solves something else.
-    pub fn open(&self, subject: Subject) {
+    pub fn open(&self, subject: Arc<dyn Subject>, settings: Settings) {
         self.opened.store(self.change(), Ordering::Relaxed);
-        self.order(Order::Open(subject, self.opened.load(Ordering::Relaxed)));
+        self.order(Order::Open(subject, settings, self.opened.load(Ordering::Relaxed)));
     }
 
-    /// Goes on with another importance of the same boundary.
-    pub fn set_importance(&self, importance: Arc<Stack>) {
-        self.order(Order::Importance(Asking::Surface(importance), Instant::now(), self.change()));
-    }
-
-    /// The same for a picture.
-    pub fn set_picture(&self, picture: Arc<PaintedPicture>) {
-        self.order(Order::Importance(Asking::Picture(picture), Instant::now(), self.change()));
+    /// Goes on with the same subject as it is now, painted otherwise.
+    pub fn set_importance(&self, subject: Arc<dyn Subject>) {
+        self.order(Order::Importance(subject, Instant::now(), self.change()));
     }
 
     /// Solves with other settings.

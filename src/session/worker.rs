@@ -5,16 +5,17 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{Asking, Histogram, Lattice, Order, Phase, Shared, Snapshot, State, Subject};
+use super::{Histogram, Lattice, Order, Phase, Shared, Snapshot, State};
 use crate::{
     Error, Result,
     collision::plugin::{CollisionProblem, Resumed, Start, Warped},
     edge::plugin::LinearSolution,
     film::plugin::Reel,
     importance::plugin::Importance,
-    run::{Content, Domain, Run, domain_summary},
+    run::{Domain, Run, domain_summary},
     schedule::Stage,
     settings::Settings,
+    subject::Subject,
     transfer::plugin::Bound,
     voxel::plugin::{DomainBoundary, Lattice as Cells, SuspectedWelds},
 };
@@ -30,7 +31,7 @@ pub(super) fn work(inbox: &mpsc::Receiver<Order>, shared: &Shared) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     // Where the system gives no threads the common pool does the work.
     let _pool = rayon::ThreadPoolBuilder::new().num_threads((cores - 1).max(1)).use_current_thread().build();
-    let mut worker = Worker { shared, now: Snapshot::default(), subject: None, job: None, published: Instant::now() };
+    let mut worker = Worker { shared, now: Snapshot::default(), task: None, job: None, published: Instant::now() };
     loop {
         let order = match worker.patience() {
             None => inbox.recv().ok(),
@@ -63,6 +64,13 @@ fn newest(first: Order, inbox: &mpsc::Receiver<Order>) -> Vec<Order> {
     orders
 }
 
+/// What to solve, and how.
+#[derive(Clone)]
+struct Task {
+    subject: Arc<dyn Subject>,
+    settings: Settings,
+}
+
 /// What there is of a subject.
 enum Job {
     Voxelize,
@@ -80,7 +88,7 @@ struct Solve {
 struct Worker<'a> {
     shared: &'a Shared,
     now: Snapshot,
-    subject: Option<Subject>,
+    task: Option<Task>,
     job: Option<Job>,
     published: Instant,
 }
@@ -120,13 +128,13 @@ impl Worker<'_> {
         for order in orders {
             let result = match order {
                 Order::Shutdown => return false,
-                Order::Open(subject, number) => {
+                Order::Open(subject, settings, number) => {
                     (self.now.opened, self.now.answers) = (number, number);
-                    self.open(subject)
+                    self.open(Task { subject, settings })
                 }
-                Order::Importance(asking, at, number) => {
+                Order::Importance(subject, at, number) => {
                     self.now.answers = number;
-                    self.set_importance(asking, Some(at))
+                    self.set_importance(subject, Some(at))
                 }
                 Order::Settings(settings, number) => {
                     self.now.answers = number;
@@ -159,44 +167,41 @@ impl Worker<'_> {
         }
     }
 
-    fn open(&mut self, subject: Subject) -> Result<()> {
+    fn open(&mut self, task: Task) -> Result<()> {
         let Snapshot { version, opened, answers, .. } = self.now;
         self.now = Snapshot { version, opened, answers, phase: Phase::Preparing, ..Snapshot::default() };
-        domain(&subject).check()?;
-        self.subject = Some(subject);
+        task.domain().check()?;
+        self.task = Some(task);
         self.job = Some(Job::Voxelize);
         self.publish();
         Ok(())
     }
 
     fn set_settings(&mut self, settings: Settings) -> Result<()> {
-        let Some(subject) = &mut self.subject else { return Ok(()) };
-        let same_lattice = subject.settings.resolution == settings.resolution && self.now.phase != Phase::Failed;
-        subject.settings = settings.clone();
-        let subject = subject.clone();
+        let Some(task) = &mut self.task else { return Ok(()) };
+        let same_lattice = task.settings.resolution == settings.resolution && self.now.phase != Phase::Failed;
+        task.settings = settings.clone();
+        let task = task.clone();
         match &mut self.job {
             Some(Job::Solve(solve)) if same_lattice => solve.run.set(settings, Start::Present),
             Some(Job::Voxelize) if same_lattice => return Ok(()),
-            _ => return self.open(subject),
+            _ => return self.open(task),
         }
         self.changed(None)
     }
 
     /// The linear solution now; the rest once no more dabs come. `at` is when the change was ordered.
-    fn set_importance(&mut self, asking: Asking, at: Option<Instant>) -> Result<()> {
-        let Some(subject) = &mut self.subject else { return Ok(()) };
-        match asking {
-            Asking::Surface(stack) => subject.importance = stack,
-            Asking::Picture(picture) => subject.picture = Some(picture),
-        }
+    fn set_importance(&mut self, subject: Arc<dyn Subject>, at: Option<Instant>) -> Result<()> {
+        let Some(task) = &mut self.task else { return Ok(()) };
+        task.subject = subject;
         match &mut self.job {
-            Some(Job::Solve(solve)) => solve.run.ask(content(subject), Start::Present),
+            Some(Job::Solve(solve)) => solve.run.ask(task.subject.content(), Start::Present),
             // What is being prepared takes it into account.
             Some(Job::Voxelize) => return Ok(()),
             // What has failed is tried again with it.
             None => {
-                let subject = subject.clone();
-                return self.open(subject);
+                let task = task.clone();
+                return self.open(task);
             }
         }
         self.changed(at)
@@ -259,10 +264,10 @@ impl Worker<'_> {
 
     /// Lattice, importance, linear solution.
     fn prepare(&mut self) -> Result<()> {
-        let Some(subject) = self.subject.clone() else { return Ok(()) };
-        let mut run = Run::interactive(domain(&subject))?;
+        let Some(task) = self.task.clone() else { return Ok(()) };
+        let mut run = Run::interactive(task.domain())?;
         run.step_until(Stage::Bind)?;
-        self.now.lattice = Some(lattice(&subject, &run)?);
+        self.now.lattice = Some(lattice(&task, &run)?);
         self.publish();
 
         run.step_until(Stage::EdgeSolve)?;
@@ -405,34 +410,22 @@ fn follow(run: &Run, now: &mut Snapshot) {
     }
 }
 
-/// What is solved: the subject itself, or of a picture its pixels.
-fn content(subject: &Subject) -> Content {
-    match &subject.picture {
-        Some(picture) => Content::Picture(picture.flat()),
-        None => Content::Body(subject.boundary.clone(), subject.importance.clone()),
+impl Task {
+    /// As the engine takes it.
+    fn domain(&self) -> Domain {
+        Domain { content: self.subject.content(), settings: self.settings.clone() }
     }
 }
 
-/// The same with the settings.
-fn domain(subject: &Subject) -> Domain {
-    Domain { content: content(subject), settings: subject.settings.clone() }
-}
-
-/// The lattice of a subject that is bound to it; what is drawn of a picture has its texture.
-fn lattice(subject: &Subject, run: &Run) -> Result<Lattice> {
+/// The lattice of a subject that is bound to it.
+fn lattice(task: &Task, run: &Run) -> Result<Lattice> {
     let parts = (|| {
         Some((run.get::<DomainBoundary>()?, run.get::<Cells>()?, run.get::<Bound>()?, run.get::<SuspectedWelds>()?))
     })();
     let Some((DomainBoundary(boundary), Cells(complex), Bound(binding), SuspectedWelds(welds))) = parts else {
         return Err(Error::Fault("a domain that was voxelized has no lattice".into()));
     };
-    let boundary = match &subject.picture {
-        Some(picture) => {
-            let (name, texture) = (&picture.ground.flat.name, picture.ground.texture.to_vec());
-            Arc::new((**boundary).clone().with_texture(name, texture))
-        }
-        None => boundary.clone(),
-    };
-    let summary = domain_summary(complex, subject.settings.resolution, *welds);
+    let boundary = task.subject.drawn(boundary)?;
+    let summary = domain_summary(complex, task.settings.resolution, *welds);
     Ok(Lattice { boundary, complex: complex.clone(), binding: binding.clone(), summary })
 }

@@ -8,10 +8,7 @@ use glam::DVec3;
 use homunculus::{
     Result,
     boundary::{Boundary, Regions},
-    importance::{
-        Layer, Stack,
-        field::{self, Field},
-    },
+    importance::{Field, Layer, Stack},
     picture::{self, Cut, Picture},
     run::{self, Observer, Outcome, Progress},
     settings::Settings,
@@ -138,7 +135,7 @@ pub fn states() -> Option<(Picture, Field)> {
     std::fs::write(&table, format!("region,name,value\n{}\n", rows.collect::<Vec<_>>().join("\n"))).expect("written");
 
     let picture = picture::read(&map, &Cut::default()).expect("a picture");
-    let layer = field::Layer::Regions { ids, values: table, per_area: true };
+    let layer = Layer::Regions { regions: ids, values: table, per_area: true };
     let field = Field::load(&[layer], 1.0, false, &picture, Path::new("")).expect("a field");
     Some((picture, field))
 }

@@ -2,9 +2,8 @@
 
 use crate::{Files, colourful, ids, mesh_of, picture_of, png_bytes, regions, sentence, shared};
 use glam::{DVec2, dvec2};
-use homunculus::importance::field::{Field, Layer};
 use homunculus::{
-    importance::{RegionArea, areas, median_error, worst},
+    importance::{Field, Layer, RegionArea, areas, median_error, worst},
     picture::{self, Cut},
 };
 use image::{GrayImage, Luma, Rgba, RgbaImage};
@@ -16,7 +15,7 @@ fn image_layer(range: Option<(f32, f32)>) -> Layer {
 #[test]
 fn layers_apply_in_order() {
     let picture = picture_of(colourful(40, 30));
-    let disc = |value| Layer::Disc { centre: [20.5, 15.5], radius: 8.0, value };
+    let disc = |value| Layer::Sphere { centre: [20.5, 15.5, 0.0], radius: 8.0, value };
     let map = png_bytes(GrayImage::from_fn(40, 30, |x, _| Luma([if x < 20 { 0 } else { 255 }])));
     let files = Files::new(&[("map.png", map)]);
     let at = |field: &Field, x: u32, y: u32| field.values[(y * 40 + x) as usize];
@@ -29,22 +28,31 @@ fn layers_apply_in_order() {
     assert_eq!(at(&field, 0, 0), 1.0);
     let half = at(&field, 24, 15);
     assert!((f64::from(half).ln() / 2f64.ln() - homunculus::importance::falloff(0.5)).abs() < 1e-6, "{half}");
-    let aside = Layer::Disc { centre: [500.0, 500.0], radius: 3.0, value: 2.0 };
+    let aside = Layer::Sphere { centre: [500.0, 500.0, 0.0], radius: 3.0, value: 2.0 };
     assert!(files.load(&[aside], &picture).unwrap().warnings[0].contains("nothing of the body"));
 }
 
 #[test]
-fn discs_are_written_with_or_without_a_third_coordinate() {
-    let disc = Layer::Disc { centre: [3.0, -4.5], radius: 2.0, value: 1.5 };
-    assert_eq!(Layer::disc("3, -4.5,2,1.5").as_ref(), Ok(&disc));
-    assert_eq!(Layer::disc("3,-4.5,99,2,1.5").as_ref(), Ok(&disc));
-    for (text, problem) in [("3,4,2", "there are 3"), ("1,2,3,4,5,6", "there are 6"), ("a,b,c,d", "`a`"), ("", "``")] {
-        assert!(Layer::disc(text).unwrap_err().contains(problem), "{text}");
-    }
+fn of_a_dab_the_third_coordinate_means_nothing_and_the_rest_is_checked() {
     let picture = picture_of(colourful(40, 30));
-    for text in ["3,4,-2,1.5", "3,4,2,0", "NaN,4,2,2", "3,4,inf,2"] {
-        let layer = Layer::disc(text).unwrap();
-        assert!(sentence(Field::load(&[layer], 1.0, false, &picture, std::path::Path::new(""))).contains("disc"));
+    let load = |centre: [f64; 3], radius: f64, value: f32| {
+        let layer = Layer::Sphere { centre, radius, value };
+        Field::load(&[layer], 1.0, false, &picture, std::path::Path::new(""))
+    };
+    let field = load([20.0, 15.0, 0.0], 8.0, 1.5).unwrap();
+    assert_eq!(load([20.0, 15.0, 99.0], 8.0, 1.5).unwrap(), field);
+    assert_ne!(load([20.0, 16.0, 0.0], 8.0, 1.5).unwrap(), field, "sabotage: the others do");
+    for (x, radius, value) in [(3.0, -2.0, 1.5), (3.0, 2.0, 0.0), (f64::NAN, 2.0, 2.0), (3.0, f64::INFINITY, 2.0)] {
+        assert!(sentence(load([x, 4.0, 0.0], radius, value)).contains("disc"));
+    }
+}
+
+#[test]
+fn what_speaks_of_vertices_is_refused() {
+    let picture = picture_of(colourful(40, 30));
+    for layer in [Layer::Attribute { name: "a".into(), range: None }, Layer::Values { path: "v.csv".into() }] {
+        let problem = sentence(Field::load(&[layer], 1.0, false, &picture, std::path::Path::new("")));
+        assert!(problem.contains("a picture has no vertices"), "{problem}");
     }
 }
 
@@ -118,14 +126,14 @@ fn tables_that_do_not_fit_are_refused_with_the_row() {
         ("map.png", png_bytes(ids())),
         ("v.csv", "region,importance\n1,2\n2,1\n".into()),
     ]);
-    let layer = Layer::Regions { ids: "id.png".into(), values: "v.csv".into(), per_area: false };
+    let layer = Layer::Regions { regions: "id.png".into(), values: "v.csv".into(), per_area: false };
     for layer in [layer, image_layer(None)] {
         let problem = sentence(files.load(&[layer], &picture));
         assert!(problem.contains("40 × 30") && problem.contains("41 × 30"), "{problem}");
     }
     let coloured =
         Files::new(&[("id.png", png_bytes(colourful(40, 30))), ("v.csv", "region,importance\n1,2\n".into())]);
-    let layer = Layer::Regions { ids: "id.png".into(), values: "v.csv".into(), per_area: false };
+    let layer = Layer::Regions { regions: "id.png".into(), values: "v.csv".into(), per_area: false };
     assert!(sentence(coloured.load(&[layer], &picture_of(colourful(40, 30)))).contains("is coloured"));
 }
 
@@ -133,7 +141,7 @@ fn tables_that_do_not_fit_are_refused_with_the_row() {
 fn clamp_moves_what_would_be_refused() {
     let picture = picture_of(colourful(40, 30));
     let files = Files::new(&[("id.png", png_bytes(ids())), ("v.csv", "region,importance\n1,-2\n2,90\n".into())]);
-    let layer = Layer::Regions { ids: "id.png".into(), values: "v.csv".into(), per_area: false };
+    let layer = Layer::Regions { regions: "id.png".into(), values: "v.csv".into(), per_area: false };
     let field = Field::load(&[layer], 1.0, true, &picture, files.0.path()).unwrap();
     assert_eq!((field.values[0], field.values[17], field.clamped), (0.05, 20.0, 2));
 }
@@ -168,7 +176,7 @@ fn states_of_the_shared_map_are_measured() {
     let mut reader = csv::Reader::from_path(facts).unwrap();
     let rows = reader.records().map(|r| r.unwrap()).map(|r| format!("{},{},{}\n", &r[0], &r[1], &r[2]));
     let table = format!("region,name,value\n{}", rows.collect::<String>());
-    let layer = Layer::Regions { ids: images.join("us_states_id.png"), values: "v.csv".into(), per_area: true };
+    let layer = Layer::Regions { regions: images.join("us_states_id.png"), values: "v.csv".into(), per_area: true };
     let field = Files::new(&[("v.csv", table.into())]).load(&[layer], &picture).unwrap();
     assert_eq!(field.regions.as_ref().unwrap().ids.len(), 51);
     let mesh = mesh_of(&picture, 975.0 / 256.0);

@@ -9,7 +9,7 @@ mod reading;
 mod scenes;
 
 use glam::{DVec2, UVec2, dvec2};
-use homunculus::importance::field::{Field, Layer};
+use homunculus::importance::{Field, Layer};
 use homunculus::picture::{Cut, FlatMesh, Picture, Pixels, read_bytes};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgba, RgbaImage};
 use std::io::Cursor;
@@ -141,6 +141,6 @@ fn ids() -> GrayImage {
 
 fn regions(table: &str, per_area: bool) -> homunculus::Result<Field> {
     let files = Files::new(&[("id.png", png_bytes(ids())), ("v.csv", table.into())]);
-    let layer = Layer::Regions { ids: "id.png".into(), values: "v.csv".into(), per_area };
+    let layer = Layer::Regions { regions: "id.png".into(), values: "v.csv".into(), per_area };
     files.load(&[layer], &picture_of(colourful(40, 30)))
 }

@@ -3,6 +3,7 @@
 use bevy_egui::egui::epaint::Shape;
 use bevy_egui::egui::{Context, Event, Key, Modifiers, Pos2, RawInput, Rect, Vec2};
 use homunculus::app::play::Sandbox;
+use homunculus::importance::Offered;
 use homunculus::panel::{self, Asked, Compare, Facts, Prompt, Tool, Wish, theme};
 use homunculus::scene::Source;
 
@@ -123,7 +124,7 @@ fn a_picture_has_no_turntable_in_the_view_or_in_its_films() {
     let count = |texts: &[String]| texts.iter().filter(|text| text.contains("Turntable")).count();
     assert_eq!(count(&of_body), 2, "{of_body:?}");
     stage.wish(Wish::Open(Source::Gallery("magnet".into())));
-    stage.wait("the magnet", |s| s.open.as_ref().is_some_and(|open| open.is_picture()));
+    stage.wait("the magnet", |s| s.open.as_ref().is_some_and(|open| open.is_flat()));
     let of_picture = said(&mut stage.sandbox());
     assert!(says(&of_picture, "Growth") && count(&of_picture) == 0, "{of_picture:?}");
 }
@@ -136,7 +137,7 @@ fn where_there_is_no_dialog_the_window_says_so_and_asks_for_the_path() {
     stage.sandbox().choice.prompt = Some(Prompt::new(Asked::ExportMesh, "hand-warped.glb".into()));
     let asked = said(&mut stage.sandbox());
     assert!(says(&asked, "xdg-desktop-portal") && says(&asked, "hand-warped.glb"), "{asked:?}");
-    stage.sandbox().choice.prompt = Some(Prompt::new(Asked::Regions, String::new()));
+    stage.sandbox().choice.prompt = Some(Prompt::new(Asked::Layer(Offered::Regions), String::new()));
     let asked = said(&mut stage.sandbox());
     assert!(says(&asked, "Regions") && says(&asked, "Values"), "{asked:?}");
 }
@@ -174,7 +175,7 @@ fn nothing_is_cut_at_the_sides_of_its_panel() {
     assert!(says(&texts, "Along") && says(&texts, "Keys and mouse") && says(&texts, "Warped mesh"), "{texts:?}");
     assert_eq!(cut(&mut stage.sandbox(), &[]), [""; 0]);
     stage.wish(Wish::Open(Source::Gallery("magnet".into())));
-    stage.wait("the magnet", |s| s.open.as_ref().is_some_and(|open| open.is_picture()));
+    stage.wait("the magnet", |s| s.open.as_ref().is_some_and(|open| open.is_flat()));
     open_all(&mut stage);
     assert_eq!(cut(&mut stage.sandbox(), &[]), [""; 0]);
     // Sabotage: what reaches under a panel is seen to.

@@ -11,7 +11,7 @@ use glam::DVec3;
 use homunculus::app::play::Shown;
 use homunculus::certificate::Places;
 use homunculus::certificate::{Shell, Surfaces};
-use homunculus::importance::Layer;
+use homunculus::importance::{Layer, Offered};
 use homunculus::paint::{Edit, Fill};
 use homunculus::panel::{Asked, Compare, Wish};
 use homunculus::scene::{Draft, Scene, Source};
@@ -88,7 +88,7 @@ fn the_camera_looks_straight_on_and_a_drag_moves_the_picture() {
     stage.key("t");
     // A body after it is looked at from the side again, in the colours of its importance.
     stage.wish(Wish::Open(Source::Gallery("hand".into())));
-    stage.wait("the hand", |s| s.open.as_ref().is_some_and(|open| !open.is_picture()));
+    stage.wait("the hand", |s| s.open.as_ref().is_some_and(|open| !open.is_flat()));
     stage.app.update();
     stage.app.update();
     assert!(!stage.orbit().orthographic && stage.orbit().yaw != 0.0);
@@ -177,7 +177,7 @@ fn regions_become_area_and_what_is_dropped_is_recognised() {
     let mut stage = Stage::open();
     // A column `value` is a statistic: it becomes area.
     let (regions, values) = (stage.path("ids.png"), stage.path("people.csv"));
-    stage.wish(Wish::Choose(Asked::Regions, vec![regions.clone(), values.clone()]));
+    stage.wish(Wish::Choose(Asked::Layer(Offered::Regions), vec![regions.clone(), values.clone()]));
     stage.wait("the layer", |s| s.open.as_ref().is_some_and(|open| !open.draft().layers.is_empty()));
     let layer = Layer::Regions { regions, values, per_area: true };
     assert_eq!(stage.sandbox().open.as_ref().unwrap().draft().layers, [layer]);
@@ -212,7 +212,7 @@ fn regions_become_area_and_what_is_dropped_is_recognised() {
     // A whole one opens.
     stage.drop_file(&stage.path("ids.png"));
     stage.wait("the other picture", |s| s.open.as_ref().is_some_and(|open| open.title() == "ids.png"));
-    assert!(stage.sandbox().open.as_ref().unwrap().is_picture());
+    assert!(stage.sandbox().open.as_ref().unwrap().is_flat());
 }
 
 #[test]

@@ -1,10 +1,19 @@
 //! A scene as it is shown: four pictures, and what was found.
 
+use std::sync::Arc;
+use std::time::Instant;
+
 use image::RgbImage;
 
+use super::photographer::Photographer;
+use crate::app::progress;
 use crate::export::report::Report;
 use crate::gallery::Entry;
-use crate::view::Legend;
+use crate::run::{self, Domain};
+use crate::scene::{Draft, Scene, Source};
+use crate::subject::{self, Grown};
+use crate::view::{Legend, Looks, Mode};
+use crate::{Error, Result};
 
 /// Side of a picture, pixels: four of them fill the width of a page on a laptop's sharp screen.
 pub(super) const SIDE: u32 = 480;
@@ -13,7 +22,7 @@ pub(super) const SIDE: u32 = 480;
 pub(super) struct Exhibit {
     pub entry: Entry,
     /// What came of it, or why nothing did.
-    pub found: Result<Found, String>,
+    pub found: std::result::Result<Found, String>,
 }
 
 /// What came of a scene.
@@ -21,7 +30,7 @@ pub(super) struct Found {
     /// At rest, its importance, Eq. 1 alone with its crossings in red, and the certified result: all from the same place.
     pub pictures: [RgbImage; 4],
     /// What the colours of importance mean.
-    pub legend: Option<Legend>,
+    pub legend: Legend,
     pub report: Report,
     /// Wall time of the solve.
     pub seconds: f64,
@@ -48,6 +57,29 @@ impl Worst<'_> {
 }
 
 impl Found {
+    /// Warps a scene at its own resolution and takes its pictures.
+    ///
+    /// # Errors
+    /// What the engine or the driver refuses.
+    pub fn of(entry: &Entry, photographer: &mut Photographer) -> Result<Self> {
+        let scene = Scene::new(Draft::fresh(&Source::Gallery(entry.name.into())))?;
+        let subject = subject::find(&scene.source)?.open(&scene)?;
+        let start = Instant::now();
+        let domain = Domain { content: subject.content(), settings: scene.settings() };
+        let solved = run::solve(domain, &progress::watcher(true))?;
+        let seconds = start.elapsed().as_secs_f64();
+
+        let report = subject::report(&*subject, &scene, &scene.settings(), &Grown::from(&solved), Vec::new());
+        let importance = Some(Arc::new(subject.asked(&solved.outcome)));
+        let coloured = Looks { mode: Mode::Importance, importance, ..Looks::default() };
+        let legend = coloured.legend().ok_or_else(|| Error::Fault("importance has no legend".into()))?;
+        let pictures = match subject.portraits(&solved, SIDE, &|value| colour(&legend, value)) {
+            Some(pictures) => pictures?,
+            None => photographer.portraits(entry, solved, coloured)?,
+        };
+        Ok(Self { pictures, legend, report, seconds })
+    }
+
     /// Crossings that Eq. 1 alone has.
     pub fn classic_crossings(&self) -> usize {
         self.report.classic.as_ref().map_or(0, |classic| classic.crossings)
@@ -101,4 +133,10 @@ impl Exhibit {
             Err(why) => format!("{}: FAILED: {why}", self.entry.name),
         }
     }
+}
+
+/// The colour that a legend gives a value; its stops are evenly spaced in the logarithm.
+fn colour(legend: &Legend, value: f32) -> [u8; 3] {
+    let at = legend.stops.partition_point(|(stop, _)| *stop < value);
+    legend.stops.get(at).or(legend.stops.last()).map_or([0; 3], |(_, colour)| *colour)
 }

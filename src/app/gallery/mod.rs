@@ -1,13 +1,11 @@
 //! `homunculus gallery`: what is built in, a line each, as a page of pictures, or as thumbnails in the window.
 
 #[cfg(feature = "record")]
-mod body;
-#[cfg(feature = "record")]
 mod exhibit;
 #[cfg(feature = "record")]
-mod flat;
-#[cfg(feature = "record")]
 mod page;
+#[cfg(feature = "record")]
+mod photographer;
 #[cfg(feature = "record")]
 mod render;
 #[cfg(feature = "record")]

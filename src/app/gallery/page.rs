@@ -81,7 +81,7 @@ fn pictures(page: &mut String, name: &str, found: &Found) {
     page.push_str("<div class=\"row\">\n");
     for (k, (file, caption)) in NAMES.into_iter().enumerate() {
         let beside = match k {
-            1 => found.legend.as_ref().map_or_else(String::new, legend),
+            1 => legend(&found.legend),
             2 => format!("<em class=\"bad\">{}</em>", crossings(found.classic_crossings())),
             3 => {
                 let kind = if found.faults() == 0 { "good" } else { "bad" };
@@ -209,8 +209,15 @@ mod tests {
 
     #[test]
     fn a_failure_is_told_and_text_is_escaped() {
-        let entry =
-            Entry { name: "x", one_line: "a < b", reference: "\"c\"", resolution: 8, fidelity: 0.5, camera: [0.0; 2] };
+        let entry = Entry {
+            name: "x",
+            kind: crate::format::Kind::Body,
+            one_line: "a < b",
+            reference: "\"c\"",
+            resolution: 8,
+            fidelity: 0.5,
+            camera: [0.0; 2],
+        };
         let page = html(&[Exhibit { entry, found: Err("no <driver>".into()) }]);
         assert!(page.contains("class=\"failure\">no &lt;driver&gt;<") && page.contains("0 of 1"), "{page}");
         assert!(page.contains("A &lt; b.") && page.contains("Source: &quot;c&quot;."));

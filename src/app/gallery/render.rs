@@ -6,13 +6,12 @@ use std::path::Path;
 use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
 
-use super::body::Photographer;
-use super::exhibit::{Exhibit, NAMES};
-use super::{flat, page, sheet};
+use super::exhibit::{Exhibit, Found, NAMES};
+use super::photographer::Photographer;
+use super::{page, sheet};
 use crate::app::{Verdict, cancel, note, say};
 use crate::file::write_atomically;
 use crate::gallery::Entry;
-use crate::scene::Source;
 use crate::{Error, Result};
 
 /// Of the pictures on the page: no blocks are seen, and a page of all scenes stays below 3 MB.
@@ -35,8 +34,7 @@ pub(super) fn run(entries: &[Entry], folder: &Path) -> Result<Verdict> {
     let mut exhibits = Vec::with_capacity(entries.len());
     for (k, entry) in entries.iter().enumerate() {
         note(&format!("[{}/{}] {} …", k + 1, entries.len(), entry.name));
-        let is_picture = Source::Gallery(entry.name.into()).is_picture();
-        let found = if is_picture { flat::exhibit(entry) } else { photographer.exhibit(entry) };
+        let found = Found::of(entry, &mut photographer);
         if cancel::asked() {
             return Err(Error::Cancelled);
         }

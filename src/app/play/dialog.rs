@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use crate::format::{Kind, Use};
+use crate::importance::Ask;
 use crate::panel::Asked;
 
 /// Nobody closes a dialog as soon as this after it was asked for: then there was none.
@@ -10,53 +12,43 @@ const UNSEEN: Duration = Duration::from_millis(250);
 
 /// Files chosen in the system's dialog; none in it where it was cancelled, `None` where the system shows no dialog. Waits
 /// for the user.
-pub(super) fn choose(asked: Asked, proposed: &str) -> Option<Vec<PathBuf>> {
+pub(super) fn choose(asked: Asked, proposed: &str, kind: Kind) -> Option<Vec<PathBuf>> {
     let start = Instant::now();
-    let files = shown(asked, proposed);
+    let files = shown(asked, proposed, kind);
     (!files.is_empty() || start.elapsed() > UNSEEN).then_some(files)
 }
 
-fn shown(asked: Asked, proposed: &str) -> Vec<PathBuf> {
-    const MESHES: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "off"];
-    const PICTURES: [&str; 4] = ["png", "jpg", "jpeg", "webp"];
-    let all: Vec<&str> = MESHES.into_iter().chain(PICTURES).chain(["ron"]).collect();
-    let is_picture = PICTURES.iter().any(|extension| proposed.ends_with(extension));
-    let dialog = rfd::FileDialog::new();
-    let one = |dialog: rfd::FileDialog| dialog.pick_file().into_iter().collect();
-    let to = |dialog: rfd::FileDialog, name: &str, extensions: &[&str]| -> Vec<PathBuf> {
-        dialog.set_file_name(proposed).add_filter(name, extensions).save_file().into_iter().collect()
+fn shown(asked: Asked, proposed: &str, kind: Kind) -> Vec<PathBuf> {
+    let dialog = |title: &str| rfd::FileDialog::new().set_title(title);
+    let to = |title: &str, name: &str, what: Use| -> Vec<PathBuf> {
+        let dialog = dialog(title).set_file_name(proposed).add_filter(name, &what.extensions());
+        dialog.save_file().into_iter().collect()
     };
+    let word = kind.word();
     match asked {
-        Asked::Open => one(dialog
-            .set_title("Open")
-            .add_filter("Everything that opens", &all)
-            .add_filter("Scenes", &["ron"])
-            .add_filter("Meshes", &MESHES)
-            .add_filter("Pictures", &PICTURES)),
-        Asked::Values => one(dialog.set_title("Importance of vertices or regions").add_filter("Table", &["csv"])),
-        Asked::Image => one(dialog.set_title("Importance as a picture").add_filter("Pictures", &PICTURES)),
-        Asked::Regions => {
-            let title = |title: &str| rfd::FileDialog::new().set_title(title);
-            let regions = if is_picture {
-                title("Which pixel belongs to which region: ids as grey values").add_filter("Pictures", &PICTURES)
-            } else {
-                title("Which vertex belongs to which region").add_filter("Table", &["csv"])
-            };
-            let Some(regions) = regions.pick_file() else { return Vec::new() };
-            let values = title("What each region is worth").add_filter("Table", &["csv"]).pick_file();
-            values.map(|values| vec![regions, values]).unwrap_or_default()
+        Asked::Open => {
+            let sources = Kind::ALL.map(|kind| (format!("{}s", capital(kind.word())), Use::Source(kind)));
+            let kinds: Vec<_> = [("Scenes".into(), Use::Scene)].into_iter().chain(sources).collect();
+            let all: Vec<&str> = kinds.iter().flat_map(|(_, what)| what.extensions()).collect();
+            let dialog = dialog("Open").add_filter("Everything that opens", &all);
+            let dialog = kinds.iter().fold(dialog, |dialog, (name, what)| dialog.add_filter(name, &what.extensions()));
+            dialog.pick_file().into_iter().collect()
         }
-        Asked::SaveScene => to(dialog.set_title("Save the scene"), "Scene", &["ron"]),
-        Asked::ExportMesh if is_picture => to(dialog.set_title("Save the warped picture"), "Picture", &["png"]),
-        Asked::ExportGrowth if !proposed.ends_with(".glb") => {
-            to(dialog.set_title("Save the growth"), "Animation", &["gif", "apng", "glb"])
+        Asked::Layer(offered) => {
+            let files = offered.offer(kind).map_or(&[][..], |offer| offer.files);
+            let pick = |file: &Ask| dialog(file.title).add_filter(file.name, &file.of.extensions()).pick_file();
+            files.iter().map(pick).collect::<Option<_>>().unwrap_or_default()
         }
-        Asked::ExportMesh => to(dialog.set_title("Save the warped mesh"), "Mesh", &crate::panel::MESH_FORMATS),
-        Asked::ExportGrowth => to(dialog.set_title("Save the growth"), "glTF", &["glb"]),
-        Asked::ExportReport => to(dialog.set_title("Save the report"), "Report", &["json"]),
-        Asked::ExportFilm => {
-            let formats = ["mp4", "gif", "apng", "webm", "mov", "mkv", "webp"];
-            to(dialog.set_title("Where to record the film"), "Film", &formats)
-        }
+        Asked::SaveScene => to("Save the scene", "Scene", Use::Scene),
+        Asked::ExportMesh => to(&format!("Save the warped {word}"), &capital(word), Use::Result(kind)),
+        Asked::ExportGrowth => to("Save the growth", "Animation", Use::Growth(kind)),
+        Asked::ExportReport => to("Save the report", "Report", Use::Report),
+        Asked::ExportFilm => to("Where to record the film", "Film", Use::Film),
     }
+}
+
+/// With a capital.
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::app::{load, scene_options};
 use crate::boundary::Boundary;
+use crate::format::{Kind, Use};
 use crate::importance::Layer;
-use crate::paint::{Canvas, Ground, Painting, Under};
+use crate::paint::{Canvas, Under};
 use crate::scene::{Draft, Scene, Source};
 use crate::settings::Settings;
+use crate::subject::{self, Painting, Subject};
 use crate::view::{Picker, RestShape};
 use crate::{Error, Result};
 
@@ -47,19 +48,17 @@ impl Document {
     /// As [`Scene::load`], the readers and [`Stack::load`](crate::importance::Stack::load).
     pub fn read(wanted: &Wanted) -> Result<Self> {
         let (scene, file) = match wanted {
-            Wanted::Source(source) => (Scene::new(scene_options::fresh(source))?, None),
+            Wanted::Source(source) => (Scene::new(Draft::fresh(source))?, None),
             Wanted::Scene(path) => (Scene::load(path)?, Some(path.clone())),
             Wanted::Autosave(path) => (Scene::load(path)?, None),
         };
-        let under = under(&scene, None)?;
-        let picture = under.ground.as_ref().map(|ground| ground.picture.clone());
+        let under = subject::under(&scene, None)?;
         let canvas = Canvas::new(&under.boundary);
         for (index, edit) in scene.strokes.iter().enumerate() {
             edit.check(index, &canvas)?;
         }
         let mut draft = scene.into_draft();
-        let mut warnings = picture.map_or_else(|| under.boundary.warnings.clone(), |picture| picture.warnings.clone());
-        warnings.extend_from_slice(under.stack.warnings());
+        let warnings = under.subject.warnings();
         let painting = Painting::new(Arc::new(canvas), under, std::mem::take(&mut draft.strokes));
         let boundary = painting.under().boundary.clone();
         let picking = (boundary.clone(), Arc::new(RestShape::new(&boundary)));
@@ -87,9 +86,15 @@ impl Document {
         if Arc::ptr_eq(known, boundary) { Picker::prepared(known, rest.clone()) } else { Picker::default() }
     }
 
-    /// Whether it is a picture.
-    pub fn is_picture(&self) -> bool {
-        self.painting.under().ground.is_some()
+    /// Whether it lies in the plane.
+    pub fn is_flat(&self) -> bool {
+        self.painting.under().subject.kind().is_flat()
+    }
+
+    /// What is to be solved: what is open, with what was painted on it.
+    pub fn subject(&self) -> Arc<dyn Subject> {
+        let subject = &self.painting.under().subject;
+        self.painting.differences().map_or_else(|| subject.clone(), |differences| subject.painted(differences))
     }
 
     /// Where it comes from.
@@ -108,8 +113,7 @@ impl Document {
 
     /// How it is to be solved.
     pub fn settings(&self) -> Settings {
-        let Draft { resolution, fidelity, keys, .. } = self.draft;
-        Settings { resolution, fidelity, keys, reference: None }
+        self.draft.settings()
     }
 
     /// Changes a setting, if the scene stays valid with it.
@@ -159,48 +163,6 @@ impl Document {
     }
 }
 
-/// Reads the layers of a scene that are not hidden, for its surface or one that is read already.
-///
-/// # Errors
-/// As [`Document::read`].
-pub fn under(scene: &Scene, known: Option<&Under>) -> Result<Under> {
-    if let Some(ground) = ground(scene, known)? {
-        let Draft { layers, hidden, base, clamp, .. } = Draft::clone(scene);
-        let (boundary, stack) = (ground.mesh.clone(), Arc::new(ground.stack()));
-        return Ok(Under { layers, hidden, base, clamp, boundary, stack, ground: Some(ground) });
-    }
-    let boundary = known.map(|known| known.boundary.clone());
-    let read = match &boundary {
-        Some(boundary) => Boundary::clone(boundary),
-        None => load::open(&scene.source)?,
-    };
-    let (prepared, stack) = load::prepare(scene, read)?;
-    let names = |boundary: &Boundary| boundary.regions.as_ref().map(|r| (r.names.clone(), r.of_vertex.clone()));
-    // The same boundary stays the same `Arc`, by which the solver and the view know that nothing else changed.
-    let boundary = match boundary {
-        Some(boundary) if names(&boundary) == names(&prepared) => boundary,
-        _ => Arc::new(prepared),
-    };
-    let Draft { layers, hidden, base, clamp, .. } = Draft::clone(scene);
-    Ok(Under { layers, hidden, base, clamp, boundary, stack: Arc::new(stack), ground: None })
-}
-
-/// The picture of a scene with what its layers say, if it is one.
-fn ground(scene: &Scene, known: Option<&Under>) -> Result<Option<Ground>> {
-    if let Some(known) = known {
-        let with_field = |ground: &Ground| {
-            let field = load::picture_field(scene, &ground.picture, ground.own.as_deref())?;
-            Ok(ground.with_field(field))
-        };
-        return known.ground.as_ref().map(with_field).transpose();
-    }
-    let Some(source) = load::picture_source(&scene.source)? else { return Ok(None) };
-    let name = scene.source.to_string();
-    let (picture, own) = source.read(&name, scene.background.as_deref())?;
-    let field = load::picture_field(scene, &picture, own.as_ref())?;
-    Ground::new(&name, picture, own.map(Arc::new), field).map(Some)
-}
-
 /// What a file on its own is taken for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Dropped {
@@ -217,16 +179,18 @@ pub enum Dropped {
 /// # Errors
 /// A table that means nothing while nothing is open.
 pub fn recognise(path: &Path, open: Option<&Document>) -> Result<Dropped> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     // On a picture another one is no layer: it opens.
-    let has_uvs = open.is_some_and(|open| !open.is_picture() && open.painting.under().boundary.vertex_uvs().is_some());
-    Ok(match extension.as_str() {
-        "ron" => Dropped::Scene(path.into()),
-        "csv" if open.is_none() => {
-            return Err(Error::in_file(path, "a table is importance for a surface; open the surface first"));
-        }
-        "csv" => Dropped::Layer(Layer::Values { path: path.into() }),
-        "png" | "jpg" | "jpeg" | "webp" if has_uvs => Dropped::Layer(Layer::Image { path: path.into(), range: None }),
-        _ => Dropped::Source(path.into()),
+    let has_uvs = open.is_some_and(|open| !open.is_flat() && open.painting.under().boundary.vertex_uvs().is_some());
+    let is = |what: Use| what.of(path).is_some();
+    Ok(if is(Use::Scene) {
+        Dropped::Scene(path.into())
+    } else if is(Use::Table) && open.is_none() {
+        return Err(Error::in_file(path, "a table is importance for a surface; open the surface first"));
+    } else if is(Use::Table) {
+        Dropped::Layer(Layer::Values { path: path.into() })
+    } else if is(Use::Source(Kind::Picture)) && has_uvs {
+        Dropped::Layer(Layer::Image { path: path.into(), range: None })
+    } else {
+        Dropped::Source(path.into())
     })
 }

@@ -10,8 +10,9 @@ use image::RgbaImage;
 use super::results::Order;
 use crate::certificate::Surfaces;
 use crate::film::{Film, Keyframe};
-use crate::record::{self, Camera, Draft, Settings, Subject};
+use crate::record::{self, Actor, Camera, Draft, Settings};
 use crate::run::{Observer, Outcome, Progress, Solved};
+use crate::session::Lattice;
 use crate::view::Orbit;
 use crate::{Error, Result};
 
@@ -54,7 +55,7 @@ impl Filming {
     /// As [`Settings::new`] and [`Format::of`](record::encode::Format::of).
     pub(super) fn begin(order: Order, draft: &Draft) -> Result<(Self, Shooting)> {
         // A picture is looked at straight on.
-        let turntable = if order.picture.is_some() { 0.0 } else { draft.turntable };
+        let turntable = if order.subject.kind().is_flat() { 0.0 } else { draft.turntable };
         let camera = camera(&order.seen_from);
         let settings = Settings::new(Draft { camera, turntable, still: None, ..draft.clone() })?;
         order.check()?;
@@ -114,8 +115,8 @@ impl Shooting {
 
     fn shoot(&self) -> Result<(PathBuf, bool)> {
         let order = &self.order;
-        let (mut subject, _) = Subject::new(order.boundary.clone(), solved(order)?);
-        let take = record::shoot(&mut subject, &self.settings, &order.path, &Watch(&self.shared), |picture| {
+        let mut actor = Actor::new(order.lattice.boundary.clone(), solved(order)?);
+        let take = record::shoot(&mut actor, &self.settings, &order.path, &Watch(&self.shared), |picture| {
             let preview = Arc::new(shrunk(picture));
             *self.shared.preview.lock().unwrap_or_else(PoisonError::into_inner) = Some(preview);
             self.shared.drawn.fetch_add(1, Ordering::Relaxed);
@@ -173,19 +174,18 @@ fn shrunk(picture: &RgbaImage) -> RgbaImage {
 /// The session's result as the recorder takes it.
 fn solved(order: &Order) -> Result<Solved> {
     let snapshot = &order.snapshot;
-    let parts = snapshot.lattice.as_ref().zip(snapshot.linear.as_ref()).zip(snapshot.importance.as_ref());
-    let Some(((lattice, linear), importance)) = parts else {
-        return Err(Error::Fault("a solve that is done lacks its lattice".into()));
+    let Some((linear, importance)) = snapshot.linear.as_ref().zip(snapshot.importance.as_ref()) else {
+        return Err(Error::Fault("a solve that is done lacks its linear solution".into()));
     };
-    let (complex, binding) = (lattice.complex.clone(), lattice.binding.clone());
-    let surfaces = Surfaces::new(&order.boundary, binding.clone(), &complex);
+    let Lattice { boundary, complex, binding, .. } = order.lattice.clone();
+    let surfaces = Surfaces::new(&boundary, binding.clone(), &complex);
     let mut film = Film::default();
     for state in &snapshot.film {
         let (positions, certificate) = ((*state.positions).clone(), state.certificate.clone());
         film.push(Keyframe { lambda: state.lambda, positions, certificate, motion_is_proven: false });
     }
     let (linear, importance) = ((**linear).clone(), (**importance).clone());
-    let (boundary, outcome) = (order.boundary.clone(), Outcome::clone(&order.outcome));
+    let outcome = Outcome::clone(&order.outcome);
     Ok(Solved { boundary, complex, binding, surfaces, film, linear, importance, outcome })
 }
 

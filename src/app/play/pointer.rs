@@ -102,8 +102,8 @@ pub(super) fn handle(
                 None
             };
     }
-    let is_picture = sandbox.open.as_ref().is_some_and(Document::is_picture);
-    if is_picture && pointer.drag == Some(Drag::Orbit) {
+    let is_flat = sandbox.open.as_ref().is_some_and(Document::is_flat);
+    if is_flat && pointer.drag == Some(Drag::Orbit) {
         pointer.drag = Some(Drag::Pan);
     }
     match pointer.drag {
@@ -169,11 +169,8 @@ fn touch(sandbox: &mut Sandbox, body: &Body, hit: Option<Hit>, began: bool) {
     if tool == Tool::Fill {
         if began {
             let place = ViewFrame::of(&body.boundary).source_from_world(hit.rest_position);
-            let ground = sandbox.open.as_ref().and_then(|open| open.painting.under().ground.as_ref());
-            let vertex = match ground {
-                Some(ground) => ground.vertex_at(place),
-                None => body.boundary.triangles[hit.triangle as usize][0],
-            };
+            let nearest = sandbox.open.as_ref().and_then(|open| open.painting.under().subject.vertex_at(place));
+            let vertex = nearest.unwrap_or_else(|| body.boundary.triangles[hit.triangle as usize][0]);
             sandbox.wishes.push(Wish::Fill(Fill::Connected { vertex, value }));
         }
         return;

@@ -203,18 +203,14 @@ pub(super) fn looks(
     let Some((open, lattice)) = sandbox.open.as_ref().zip(snapshot.lattice.as_ref()) else { return };
     let version = open.painting.version();
     let vertices = lattice.boundary.positions.len();
-    let fits =
-        open.is_picture() == is_flat(&lattice.complex) && (open.is_picture() || open.painting.ln().len() == vertices);
+    let fits = open.is_flat() == is_flat(&lattice.complex) && (open.is_flat() || open.painting.ln().len() == vertices);
     let boundaries = [open.painting.under().boundary.clone(), lattice.boundary.clone()];
     let is_of = |(at, known): &PaintedAt| {
         *at == version && known.iter().zip(&boundaries).all(|(known, boundary)| Arc::ptr_eq(known, boundary))
     };
     if fits && painted.as_ref().is_none_or(|(at, _)| !is_of(at)) {
-        let importance = match &open.painting.under().ground {
-            Some(ground) => {
-                let ln = ground.carried(open.painting.ln(), &lattice.boundary);
-                ln.into_iter().map(|ln| ln.exp() as f32).collect()
-            }
+        let importance = match open.painting.under().subject.carried(open.painting.ln(), &lattice.boundary) {
+            Some(ln) => ln.into_iter().map(|ln| ln.exp() as f32).collect(),
             None => open.painting.importance(),
         };
         *painted = Some(((version, boundaries), Arc::new(importance)));
@@ -289,23 +285,23 @@ pub(super) fn camera(
     viewport: Res<Viewport>,
     time: Res<Time>,
     studio: Option<ResMut<Studio>>,
-    (mut framed, mut was_picture): (Local<Option<(Vec3, f32)>>, Local<bool>),
+    (mut framed, mut was_flat): (Local<Option<(Vec3, f32)>>, Local<bool>),
 ) {
     let Ok(mut orbit) = orbits.single_mut() else { return };
     let mut wanted = *orbit;
-    let is_picture = sandbox.open.as_ref().is_some_and(Document::is_picture);
-    wanted.orthographic = sandbox.choice.orthographic || is_picture;
-    wanted.turntable = if sandbox.choice.turntable && !is_picture { TURNTABLE } else { 0.0 };
+    let is_flat = sandbox.open.as_ref().is_some_and(Document::is_flat);
+    wanted.orthographic = sandbox.choice.orthographic || is_flat;
+    wanted.turntable = if sandbox.choice.turntable && !is_flat { TURNTABLE } else { 0.0 };
     wanted.turn(time.delta_secs());
-    if is_picture {
+    if is_flat {
         // Straight on, whatever is asked for.
         (wanted.yaw, wanted.pitch) = (0.0, 0.0);
     }
     if let Some(mut studio) = studio {
-        studio.set_if_neq(Studio { floor: !is_picture, ..studio.clone() });
+        studio.set_if_neq(Studio { floor: !is_flat, ..studio.clone() });
     }
     // A body after a picture is looked at as at first.
-    if std::mem::replace(&mut *was_picture, is_picture) && !is_picture {
+    if std::mem::replace(&mut *was_flat, is_flat) && !is_flat {
         wanted = Orbit { orthographic: sandbox.choice.orthographic, ..Orbit::default() };
     }
     // What was framed before it had grown is framed again when it has, unless the user has looked elsewhere since.
@@ -316,7 +312,7 @@ pub(super) fn camera(
         let sandbox = sandbox.bypass_change_detection();
         for look in std::mem::take(&mut sandbox.looks) {
             match look {
-                Look::From(_) if is_picture => {}
+                Look::From(_) if is_flat => {}
                 Look::From(axis) => wanted.look_from(axis),
                 Look::Frame => {
                     let extent = bounds(&sandbox.snapshot, &sandbox.choice, &wanted);

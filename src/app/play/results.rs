@@ -4,17 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::app::flat::{Drawn, crossings};
-use crate::app::load::settings_of;
-use crate::boundary::Boundary;
 use crate::export::report::{self, Report};
-use crate::export::{self, GrowthFrame};
-use crate::importance::{self, Stack};
-use crate::paint::PaintedPicture;
 use crate::panel::{Asked, Choice};
 use crate::run::Outcome;
 use crate::scene::Scene;
-use crate::session::Snapshot;
+use crate::session::{Lattice, Snapshot};
+use crate::subject::{self, Grown, Look, Subject};
 use crate::{Error, Result};
 
 /// What to write, of what, where.
@@ -22,11 +17,9 @@ pub(super) struct Order {
     pub asked: Asked,
     pub path: PathBuf,
     pub scene: Scene,
-    pub stack: Arc<Stack>,
-    /// What is drawn: of a picture the mesh that carries it.
-    pub boundary: Arc<Boundary>,
-    /// The picture with what was painted on it, if it is one.
-    pub picture: Option<PaintedPicture>,
+    /// What was solved, with what was painted on it.
+    pub subject: Arc<dyn Subject>,
+    pub lattice: Lattice,
     pub outcome: Arc<Outcome>,
     pub snapshot: Arc<Snapshot>,
     pub warnings: Vec<String>,
@@ -39,52 +32,18 @@ pub(super) struct Order {
 
 /// Writes it; where.
 pub(super) fn write(order: &Order) -> Result<PathBuf> {
-    let Order { boundary, outcome, path, .. } = order;
-    let export = &order.choice.export;
     order.check()?;
+    let (subject, grown, path) = (&order.subject, order.grown(), &order.path);
     let stopped = || order.stop.load(Ordering::Relaxed);
-    let colours = importance::colours(&outcome.importance);
-    let colours = |wanted: bool| wanted.then_some(colours.as_slice());
-    if let Some(picture) = &order.picture
-        && matches!(order.asked, Asked::ExportMesh | Asked::ExportGrowth)
-    {
-        let drawn = Drawn::new(&picture.ground.picture, boundary, &outcome.frames);
-        let scale = f64::from(export.scale);
-        match (order.asked, extension(path).as_str()) {
-            (Asked::ExportMesh, "png") => {
-                let last = order.snapshot.film.last().zip(order.snapshot.lattice.as_ref());
-                let height = f64::from(picture.ground.picture.size.y);
-                let crossings = last.map(|(last, lattice)| crossings(&lattice.complex, &last.positions, height));
-                drawn.write_picture(path, scale, &crossings.unwrap_or_default())?;
-            }
-            (Asked::ExportMesh, _) => return Err(Error::in_file(path, "a warped picture is written as .png")),
-            (_, "gif" | "apng" | "png" | "glb") => {
-                // Colours would hide the picture: the growth is the picture's own.
-                drawn.write_growth(path, scale, export.seconds, None, &stopped)?;
-            }
-            _ => return Err(Error::in_file(path, "the growth of a picture is written as .gif, .apng or .glb")),
-        }
-        return Ok(path.clone());
-    }
     match order.asked {
-        Asked::ExportMesh => {
-            let last = outcome.frames.last().ok_or_else(|| Error::Fault("the film is empty".into()))?;
-            export::mesh(boundary, &last.positions, colours(export.colour_mesh), path)?;
-        }
+        Asked::ExportMesh => subject.write_result(&grown, &order.look(order.choice.export.colour_mesh), path)?,
         Asked::ExportGrowth => {
-            let frames: Vec<_> =
-                outcome.frames.iter().map(|f| GrowthFrame { lambda: f.lambda, positions: &f.positions }).collect();
-            let colours = colours(export.colour_growth);
-            export::growth(boundary, &frames, colours, export.seconds, path, &stopped)?;
+            subject.write_growth(&grown, &order.look(order.choice.export.colour_growth), path, &stopped)?;
         }
         Asked::ExportReport => report::write(&order.report(), path)?,
         _ => return Err(Error::in_file(path, "this program was built without what writes it")),
     }
     Ok(path.clone())
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
 fn is_same(a: &Path, b: &Path) -> bool {
@@ -102,13 +61,19 @@ impl Order {
     }
 
     pub fn report(&self) -> Report {
-        let scene = &self.scene;
-        let settings = settings_of(scene);
-        let mut report = Report::of(scene, &settings, self.stack.clamped(), &self.outcome, self.warnings.clone());
-        if let Some((picture, lattice)) = self.picture.as_ref().zip(self.snapshot.lattice.as_ref()) {
-            let drawn = Drawn::new(&picture.ground.picture, &self.boundary, &self.outcome.frames);
-            report.take_areas(drawn.areas(&picture.field(), lattice.complex.grid.cell_size));
-        }
-        report
+        let (scene, warnings) = (&self.scene, self.warnings.clone());
+        subject::report(&*self.subject, scene, &scene.settings(), &self.grown(), warnings)
+    }
+
+    fn grown(&self) -> Grown<'_> {
+        let last = self.snapshot.film.last().map_or(&[][..], |last| &last.positions);
+        Grown { boundary: &self.lattice.boundary, outcome: &self.outcome, complex: &self.lattice.complex, last }
+    }
+
+    /// How it is to look. Colours are chosen for bodies alone: a picture has its own.
+    fn look(&self, coloured: bool) -> Look {
+        let export = &self.choice.export;
+        let coloured = (!self.subject.kind().is_flat()).then_some(coloured);
+        Look { scale: f64::from(export.scale), seconds: export.seconds, coloured }
     }
 }

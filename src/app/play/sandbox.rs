@@ -14,10 +14,12 @@ use super::marks::{Faulty, Marks};
 use super::memory::{Memory, keep};
 use super::tasks::{Done, Tasks};
 use crate::boundary::Boundary;
+use crate::format::Kind;
 use crate::paint::Under;
 use crate::panel::{Asked, Choice, Compare, Wish};
 use crate::scene::{Draft, Source};
-use crate::session::{Session, Snapshot, Subject};
+use crate::session::{Session, Snapshot};
+use crate::subject::Subject;
 use crate::view::{Axis, Mode, Orbit};
 use crate::{Error, Result};
 
@@ -180,20 +182,12 @@ impl Sandbox {
             Some(told) if Arc::ptr_eq(&told.boundary, boundary) => {
                 if told.painting != painting {
                     told.painting = painting;
-                    match open.painting.picture() {
-                        Some(picture) => self.session.set_picture(Arc::new(picture)),
-                        None => self.session.set_importance(Arc::new(open.painting.stack())),
-                    }
+                    self.session.set_importance(open.subject());
                 }
             }
             _ => {
                 self.told = Some(Told { boundary: boundary.clone(), painting });
-                self.session.open(Subject {
-                    boundary: boundary.clone(),
-                    importance: Arc::new(open.painting.stack()),
-                    picture: open.painting.picture().map(Arc::new),
-                    settings: open.settings(),
-                });
+                self.session.open(open.subject(), open.settings());
             }
         }
     }
@@ -246,9 +240,9 @@ impl Sandbox {
         }
     }
 
-    fn layered(&mut self, under: Under) {
+    fn layered(&mut self, under: Under<Arc<dyn Subject>>) {
         if let Some(open) = &mut self.open {
-            open.warnings = under.stack.warnings().to_vec();
+            open.warnings = under.subject.warnings();
             open.painting.set_under(under);
         }
     }
@@ -269,16 +263,16 @@ impl Sandbox {
         #[cfg(feature = "record")]
         self.choice.record.name.clear();
         // A picture is shown as it is, a body in the colours of its importance, until the user chooses otherwise.
-        let was_picture = self.open.as_ref().is_some_and(Document::is_picture);
-        if document.is_picture() != was_picture {
-            self.choice.mode = if was_picture { Mode::Importance } else { Mode::Plain };
+        let was_flat = self.open.as_ref().is_some_and(Document::is_flat);
+        if document.is_flat() != was_flat {
+            self.choice.mode = if was_flat { Mode::Importance } else { Mode::Plain };
         }
         self.open = Some(document);
         self.looks.push(Look::Frame);
     }
 
-    fn is_picture(&self) -> bool {
-        self.open.as_ref().is_some_and(Document::is_picture)
+    fn kind(&self) -> Kind {
+        self.open.as_ref().map_or(Kind::Body, |open| open.painting.under().subject.kind())
     }
 
     fn fulfil(&mut self, wish: Wish) -> Result<()> {
@@ -300,7 +294,7 @@ impl Sandbox {
                 Dropped::Layer(layer) => return self.fulfil(Wish::AddLayer(layer)),
             },
             Wish::Ask(asked) => self.ask(asked),
-            Wish::Choose(asked, files) => self.tasks.choose(asked, files, self.is_picture()),
+            Wish::Choose(asked, files) => self.tasks.choose(asked, files, self.kind()),
             Wish::Save => match self.open.as_ref().map(|open| open.file.clone()) {
                 Some(Some(file)) => return self.save(file),
                 Some(None) => self.ask(Asked::SaveScene),

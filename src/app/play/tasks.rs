@@ -1,15 +1,17 @@
 //! What takes long, on threads of its own: reading, writing, the system's dialogs.
 
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::path::PathBuf;
 use std::sync::mpsc;
+use std::sync::{Arc, Mutex};
 
 use super::dialog;
 use super::document::Document;
 use super::marks::Found;
-use crate::app::load::has_column;
+use crate::format::Kind;
+use crate::importance::Layer;
 use crate::paint::Under;
 use crate::panel::Asked;
+use crate::subject::Subject;
 use crate::{Error, Result};
 
 /// What has come of a task.
@@ -17,7 +19,7 @@ pub(super) enum Done {
     /// A scene was read, for the wish of this number.
     Opened(u64, Result<Box<Document>>),
     /// Layers were read, for the document of this number.
-    Layers(u64, Result<Box<Under>>),
+    Layers(u64, Result<Box<Under<Arc<dyn Subject>>>>),
     /// Files were chosen, or none.
     Chosen(Asked, Result<Chosen>),
     /// The scene of the document of this number was saved: where, and in which edition.
@@ -38,15 +40,17 @@ pub(super) enum Done {
 /// What was chosen in a dialog.
 #[derive(Debug)]
 pub(super) enum Chosen {
-    /// Files; none if it was cancelled. Of tables of regions: whether their values become area.
-    Files { files: Vec<PathBuf>, per_area: bool },
+    /// Files; none if it was cancelled.
+    Files(Vec<PathBuf>),
+    /// The layer that they make.
+    Layer(Layer),
     /// The system shows none.
     NoDialog,
 }
 
 /// Who is to know that a task runs.
 #[derive(Debug, PartialEq)]
-enum Kind {
+enum Audience {
     /// A person: what it does.
     Told(String),
     /// Nobody.
@@ -60,7 +64,7 @@ pub(super) struct Tasks {
     results: Mutex<mpsc::Receiver<(u64, Done)>>,
     sender: mpsc::Sender<(u64, Done)>,
     /// By the number of the task, in the order they began.
-    running: Vec<(u64, Kind)>,
+    running: Vec<(u64, Audience)>,
     begun: u64,
 }
 
@@ -106,7 +110,7 @@ impl Tasks {
         work: impl FnOnce() -> Result<T> + Send + 'static,
     ) {
         let what = what.into();
-        self.spawn(Kind::Told(what.clone()), what, done, work);
+        self.spawn(Audience::Told(what.clone()), what, done, work);
     }
 
     /// Starts a task nobody needs to know of, unless it breaks off.
@@ -116,18 +120,18 @@ impl Tasks {
         done: impl FnOnce(Result<T>) -> Done + Send + 'static,
         work: impl FnOnce() -> Result<T> + Send + 'static,
     ) {
-        self.spawn(Kind::Quiet, what.into(), done, work);
+        self.spawn(Audience::Quiet, what.into(), done, work);
     }
 
     fn spawn<T: 'static>(
         &mut self,
-        kind: Kind,
+        audience: Audience,
         what: String,
         done: impl FnOnce(Result<T>) -> Done + Send + 'static,
         work: impl FnOnce() -> Result<T> + Send + 'static,
     ) {
         self.begun += 1;
-        self.running.push((self.begun, kind));
+        self.running.push((self.begun, audience));
         let (number, sender) = (self.begun, self.sender.clone());
         let mut word = Word { number, what, done: Some(done), sender, kind: std::marker::PhantomData };
         let run = move || {
@@ -139,21 +143,21 @@ impl Tasks {
     }
 
     /// Opens the system's dialog, unless one is open.
-    pub fn ask(&mut self, asked: Asked, proposed: &str, of_picture: bool) {
-        if self.running.iter().any(|(_, kind)| *kind == Kind::Dialog) {
+    pub fn ask(&mut self, asked: Asked, proposed: &str, kind: Kind) {
+        if self.running.iter().any(|(_, audience)| *audience == Audience::Dialog) {
             return;
         }
         let proposed = proposed.to_owned();
-        let work = move || match dialog::choose(asked, &proposed) {
-            Some(files) => looked_at(asked, files, of_picture),
+        let work = move || match dialog::choose(asked, &proposed, kind) {
+            Some(files) => looked_at(asked, files, kind),
             None => Ok(Chosen::NoDialog),
         };
-        self.spawn(Kind::Dialog, "the system's dialog".into(), move |chosen| Done::Chosen(asked, chosen), work);
+        self.spawn(Audience::Dialog, "the system's dialog".into(), move |chosen| Done::Chosen(asked, chosen), work);
     }
 
     /// Files that were chosen without a dialog.
-    pub fn choose(&mut self, asked: Asked, files: Vec<PathBuf>, of_picture: bool) {
-        let work = move || looked_at(asked, files, of_picture);
+    pub fn choose(&mut self, asked: Asked, files: Vec<PathBuf>, kind: Kind) {
+        let work = move || looked_at(asked, files, kind);
         self.start("looking at the files", move |chosen| Done::Chosen(asked, chosen), work);
     }
 
@@ -167,8 +171,8 @@ impl Tasks {
 
     /// What is being done.
     pub fn busy(&self) -> Option<&str> {
-        self.running.iter().find_map(|(_, kind)| match kind {
-            Kind::Told(what) => Some(what.as_str()),
+        self.running.iter().find_map(|(_, audience)| match audience {
+            Audience::Told(what) => Some(what.as_str()),
             _ => None,
         })
     }
@@ -179,19 +183,11 @@ impl Tasks {
     }
 }
 
-/// Files, and what must be known of them before they are taken: a statistic of a picture's regions becomes area.
-fn looked_at(asked: Asked, files: Vec<PathBuf>, of_picture: bool) -> Result<Chosen> {
-    let per_area = match (asked, &files[..]) {
-        (Asked::Regions, [_, values]) if of_picture => has_value(values)?,
-        _ => false,
-    };
-    Ok(Chosen::Files { files, per_area })
-}
-
-/// Whether a table gives what regions are worth in a column `value` and not `importance`: a statistic.
-fn has_value(table: &Path) -> Result<bool> {
-    let text = std::fs::read_to_string(table).map_err(|e| Error::reading(table, e))?;
-    Ok(has_column(&text, "value") && !has_column(&text, "importance"))
+/// Files, and the layer that they make, for which they may have to be read.
+fn looked_at(asked: Asked, files: Vec<PathBuf>, kind: Kind) -> Result<Chosen> {
+    let Asked::Layer(offered) = asked else { return Ok(Chosen::Files(files)) };
+    let layer = offered.layer(kind, &files)?;
+    Ok(layer.map_or(Chosen::Files(Vec::new()), Chosen::Layer))
 }
 
 #[cfg(test)]
@@ -228,18 +224,5 @@ mod tests {
             }
         }
         assert_eq!((broken, tasks.busy()), (1, None));
-    }
-
-    #[test]
-    fn what_regions_are_worth_is_told_by_the_column() {
-        let folder = tempfile::tempdir().unwrap();
-        let table = |text: &str| {
-            let path = folder.path().join("t.csv");
-            std::fs::write(&path, text).unwrap();
-            has_value(&path).unwrap()
-        };
-        assert!(table("region,value\n1,2\n"));
-        assert!(!table("region,importance\n1,2\n") && !table("region,value,importance\n1,2,3\n"));
-        assert!(has_value(Path::new("/nowhere/t.csv")).is_err());
     }
 }

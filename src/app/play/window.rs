@@ -247,7 +247,7 @@ fn rhythm(
     let now = (version, sandbox.open.as_ref().map(|open| open.painting.version()));
     let moves = unhurried.is_waiting
         || sandbox.choice.player.is_playing
-        || (sandbox.choice.turntable && !sandbox.open.as_ref().is_some_and(|open| open.is_picture()))
+        || (sandbox.choice.turntable && !sandbox.open.as_ref().is_some_and(|open| open.is_flat()))
         || buttons.get_pressed().next().is_some();
     if moves || *seen != Some(now) {
         *awake = Some(Instant::now());

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use super::Entry;
 use crate::error::{Error, Result};
-use crate::importance::field::{Field, Layer};
+use crate::format::Kind;
+use crate::importance::{Field, Layer};
 use crate::picture::{Cut, Picture, read_bytes};
 
 /// A picture ready to be warped.
@@ -47,6 +48,7 @@ static SCENES: [Kept; 4] = [
     Kept {
         entry: Entry {
             name: "africa",
+            kind: Kind::Picture,
             one_line: "a map of Africa whose countries have the area of their population",
             reference: "importance ∝ (population / area)^(1/2), so that area becomes population; population 2014: World Bank, World Development Indicators, SP.POP.TOTL (no figure for Eritrea and Western \
                         Sahara, which keep their size); outlines after Natural Earth 1:110m, public domain",
@@ -65,6 +67,7 @@ static SCENES: [Kept; 4] = [
     Kept {
         entry: Entry {
             name: "magnet",
+            kind: Kind::Picture,
             one_line: "a horseshoe magnet whose steel tips grow until they meet",
             reference: "after the magnet in Fig. 6 of the paper; drawn here",
             resolution: 192,
@@ -78,6 +81,7 @@ static SCENES: [Kept; 4] = [
     Kept {
         entry: Entry {
             name: "crocodile",
+            kind: Kind::Picture,
             one_line: "a crocodile whose teeth grow until they fill its open jaws",
             reference: "after the crocodile in Fig. 6 of the paper; drawn here",
             resolution: 384,
@@ -95,6 +99,7 @@ static SCENES: [Kept; 4] = [
     Kept {
         entry: Entry {
             name: "snake",
+            kind: Kind::Picture,
             one_line: "a coiled snake whose swallowed prey grows between the turns of its body",
             reference: "after the snake in Fig. 6 of the paper; drawn here",
             resolution: 192,
@@ -128,7 +133,8 @@ pub fn open(name: &str) -> Result<PictureScene> {
             Field::of_regions(&picture, scene.base, ("its regions", ids), ("its table", table), *per_area)
         }
         Source::Discs(discs) => {
-            let disc = |&(centre, radius, value): &([f64; 2], f64, f32)| Layer::Disc { centre, radius, value };
+            let disc =
+                |&([x, y], radius, value): &([f64; 2], f64, f32)| Layer::Sphere { centre: [x, y, 0.0], radius, value };
             let layers: Vec<Layer> = discs.iter().map(disc).collect();
             Field::load(&layers, scene.base, false, &picture, Path::new(""))
         }

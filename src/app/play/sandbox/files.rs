@@ -1,33 +1,30 @@
 //! Files: which are asked for, what is made of those that were chosen, and what is saved, exported and recorded.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use super::super::document::{Document, under};
+use super::super::document::Document;
 use super::super::results;
 use super::super::tasks::{Chosen, Done};
 use super::Sandbox;
-use crate::importance::Layer;
+use crate::format::Use;
 use crate::panel::{Asked, Prompt, Wish};
 use crate::scene::Draft;
+use crate::subject;
 use crate::{Error, Result};
 
 impl Sandbox {
     pub(super) fn chosen(&mut self, asked: Asked, chosen: Chosen) -> Result<()> {
-        let Chosen::Files { files, per_area } = chosen else {
-            self.choice.prompt = Some(Prompt::new(asked, self.proposed_name(asked)));
-            return Ok(());
+        let files = match chosen {
+            Chosen::Files(files) => files,
+            Chosen::Layer(layer) => return self.fulfil(Wish::AddLayer(layer)),
+            Chosen::NoDialog => {
+                self.choice.prompt = Some(Prompt::new(asked, self.proposed_name(asked)));
+                return Ok(());
+            }
         };
         match (asked, &files[..]) {
             (_, []) => Ok(()),
             (Asked::Open, [path, ..]) => self.fulfil(Wish::OpenPath(path.clone())),
-            (Asked::Values, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Values { path: path.clone() })),
-            (Asked::Image, [path, ..]) => self.fulfil(Wish::AddLayer(Layer::Image { path: path.clone(), range: None })),
-            (Asked::Regions, [regions, values, ..]) => {
-                let (regions, values) = (regions.clone(), values.clone());
-                self.fulfil(Wish::AddLayer(Layer::Regions { regions, values, per_area }))
-            }
-            (Asked::Regions, [_]) => Ok(()),
             #[cfg(feature = "record")]
             (Asked::ExportFilm, [path, ..]) => {
                 self.choice.record.name = path.display().to_string();
@@ -41,7 +38,7 @@ impl Sandbox {
     /// Asks for files in the system's dialog; where there is none, the window asks.
     pub(super) fn ask(&mut self, asked: Asked) {
         let proposed = self.proposed_name(asked);
-        self.tasks.ask(asked, &proposed, self.is_picture());
+        self.tasks.ask(asked, &proposed, self.kind());
     }
 
     pub(super) fn save(&mut self, path: PathBuf) -> Result<()> {
@@ -58,9 +55,9 @@ impl Sandbox {
     pub(super) fn layers(&mut self, what: &str, change: impl FnOnce(&mut Draft)) -> Result<()> {
         let Some(open) = &self.open else { return Ok(()) };
         let scene = open.with_layers(change)?;
-        let (known, number) = (open.painting.under().clone(), self.number);
+        let (known, number) = (open.painting.under().subject.clone(), self.number);
         let done = move |under| Done::Layers(number, under);
-        self.tasks.start(what, done, move || under(&scene, Some(&known)).map(Box::new));
+        self.tasks.start(what, done, move || subject::under(&scene, Some(&known)).map(Box::new));
         self.waiting = Some(Vec::new());
         Ok(())
     }
@@ -100,9 +97,8 @@ impl Sandbox {
             asked,
             path,
             scene: open.scene()?,
-            stack: Arc::new(open.painting.stack()),
-            boundary: lattice.boundary.clone(),
-            picture: open.painting.picture(),
+            subject: open.subject(),
+            lattice: lattice.clone(),
             outcome: outcome.clone(),
             snapshot: self.snapshot.clone(),
             warnings: open.warnings.clone(),
@@ -116,17 +112,19 @@ impl Sandbox {
     pub(super) fn proposed_name(&self, asked: Asked) -> String {
         let title = self.open.as_ref().map_or_else(|| "scene".into(), Document::title);
         let stem = Path::new(&title).file_stem().map_or_else(|| title.clone(), |s| s.to_string_lossy().into_owned());
-        let is_picture = self.is_picture();
+        let (kind, export) = (self.kind(), &self.choice.export);
+        // The format that was chosen, where there is a choice.
+        let ending = |what: Use, chosen: &'static str| {
+            let known = what.extensions();
+            if known.contains(&chosen) { chosen } else { known.first().copied().unwrap_or_default() }
+        };
         match asked {
             Asked::SaveScene => format!("{stem}.ron"),
-            Asked::ExportMesh if is_picture => format!("{stem}-warped.png"),
-            Asked::ExportGrowth if is_picture => format!("{stem}-growth.{}", self.choice.export.picture_growth),
-            Asked::Regions if is_picture => "ids.png".into(),
-            Asked::ExportMesh => format!("{stem}-warped.{}", self.choice.export.format),
-            Asked::ExportGrowth => format!("{stem}-growth.glb"),
+            Asked::ExportMesh => format!("{stem}-warped.{}", ending(Use::Result(kind), export.format)),
+            Asked::ExportGrowth => format!("{stem}-growth.{}", ending(Use::Growth(kind), export.picture_growth)),
             Asked::ExportReport => format!("{stem}-report.json"),
             Asked::ExportFilm => format!("{stem}.mp4"),
-            Asked::Open | Asked::Values | Asked::Regions | Asked::Image => String::new(),
+            Asked::Open | Asked::Layer(_) => String::new(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Importance from a picture, through the texture coordinates.
+//! Importance from a map: on a surface through the texture coordinates, in a picture pixel by pixel.
 //!
 //! Texture coordinates have `v` pointing **down** from the picture's upper left corner, as in glTF and as
 //! [`Boundary::vertex_uvs`] promises; readers of formats with `v` pointing up (OBJ, PLY) flip it when they read.
@@ -9,15 +9,87 @@ use std::path::Path;
 
 use glam::Vec2;
 
+use super::field::Pixels;
+use super::stack::{OnSurface, Place, Surface};
+use super::{Ask, IMAGE_RANGE, Offer, Range, colour_map};
 use crate::boundary::Boundary;
+use crate::format::{Kind, Use};
+use crate::picture::read;
 use crate::{Error, Result};
 
 /// Widest and tallest picture read; 8192² is 256 MB once decoded.
 const MAX_SIDE: u32 = 8192;
 
+/// A map on a surface.
+#[derive(Debug)]
+pub(super) struct Map {
+    picture: Picture,
+    /// `[triangles]`
+    corner_uvs: Vec<Option<[Vec2; 3]>>,
+    /// Importance of black and of white.
+    range: (f64, f64),
+}
+
+/// The map through the texture coordinates: luminance becomes the range.
+pub(super) fn on_surface(path: &Path, range: Option<Range>, surface: &mut Surface) -> Result<Map> {
+    let Surface { boundary, reading, .. } = surface;
+    let range = reading.admit_range(range.unwrap_or(IMAGE_RANGE), || path.display().to_string())?;
+    let Some(corner_uvs) = corner_uvs(boundary) else {
+        let sentence = format!(
+            "{} has no texture coordinates, so a picture cannot be laid on it; unwrap the mesh or use --values",
+            boundary.name
+        );
+        return Err(Error::in_file(path, sentence));
+    };
+    let picture = Picture::read(path)?;
+    if corner_uvs.iter().all(Option::is_none) {
+        reading.warnings.push(format!("{}: no triangle has texture coordinates", path.display()));
+    }
+    Ok(Map { picture, corner_uvs, range })
+}
+
+impl OnSurface for Map {
+    fn over(&self, below: f64, boundary: &Boundary, place: &Place) -> f64 {
+        let Some(uv) = place.uv(boundary, &self.corner_uvs) else { return below };
+        let (luminance, opacity) = self.picture.at(uv);
+        let value = self.range.0 + luminance * (self.range.1 - self.range.0);
+        below + opacity * (value.ln() - below)
+    }
+}
+
+/// A map as large as the picture: by luminance, or back along the colour map it was painted with.
+pub(super) fn on_pixels(path: &Path, range: Option<Range>, pixels: &mut Pixels) -> Result<()> {
+    let range = range.unwrap_or(IMAGE_RANGE);
+    let (low, high) = pixels.reading.admit_range(range, || path.display().to_string())?;
+    let decoded = read::decode(path, &read::file(path)?)?;
+    pixels.check_size(path, decoded.pixels.size())?;
+    let (values, taken) = colour_map::values(&decoded.pixels);
+    pixels.reading.warnings.push(format!("{}: read as {taken}", path.display()));
+    pixels.blend(|index, below| {
+        let opacity = f64::from(decoded.pixels.wide(index)[3]) / 65535.0;
+        let value = low + f64::from(values[index]) * (high - low);
+        below + opacity * (value.ln() - below)
+    });
+    Ok(())
+}
+
+const ASK: Ask = Ask { name: "Picture", title: "Importance as a picture", of: Use::Source(Kind::Picture) };
+
+/// In the window, of a body.
+pub(super) const OF_BODY: Offer = Offer {
+    name: "Picture…",
+    hint: "Laid over the surface by its texture coordinates: black ×0.5, white ×2",
+    title: "Importance as a picture",
+    files: &[ASK],
+};
+
+/// In the window, of a picture.
+pub(super) const OF_PICTURE: Offer =
+    Offer { name: "Map…", hint: "A picture of the same size: black ×0.5, white ×2", ..OF_BODY };
+
 /// A decoded picture.
 #[derive(Debug, Clone)]
-pub(super) struct Picture {
+struct Picture {
     width: usize,
     height: usize,
     /// Row by row from the top: luminance and alpha, 0..=65535.
@@ -26,7 +98,7 @@ pub(super) struct Picture {
 
 impl Picture {
     /// Decodes the file, whatever its extension says.
-    pub fn read(path: &Path) -> Result<Self> {
+    fn read(path: &Path) -> Result<Self> {
         let reader = image::ImageReader::open(path).and_then(image::ImageReader::with_guessed_format);
         let mut reader = reader.map_err(|e| Error::reading(path, e))?;
         let mut limits = image::Limits::default();
@@ -44,7 +116,7 @@ impl Picture {
 
     /// Bilinear luminance and opacity, each 0..=1, at a texture coordinate (`v` down). Luminance is the mean of what is
     /// opaque, so transparent pixels do not darken their neighbours.
-    pub fn at(&self, uv: Vec2) -> (f64, f64) {
+    fn at(&self, uv: Vec2) -> (f64, f64) {
         let (left, right, x) = neighbours(tile(uv.x), self.width);
         let (upper, lower, y) = neighbours(tile(uv.y), self.height);
         let mut luminance = 0.0;
@@ -76,7 +148,7 @@ fn neighbours(t: f64, texels: usize) -> (usize, usize, f64) {
 
 /// `[triangles]` texture coordinates of the corners, `v` down; `None` for triangles that have none. A vertex on a seam
 /// has several, one for each side.
-pub(super) fn corner_uvs(boundary: &Boundary) -> Option<Vec<Option<[Vec2; 3]>>> {
+fn corner_uvs(boundary: &Boundary) -> Option<Vec<Option<[Vec2; 3]>>> {
     let source = &boundary.source;
     if source.uvs.is_empty() {
         return None;

@@ -9,14 +9,14 @@ use super::Mix;
 use crate::boundary::Boundary;
 use crate::certificate::Surfaces;
 use crate::certificate::{Certificate, Places, certify};
-use crate::run::{Outcome, Solved};
+use crate::run::Solved;
 use crate::transfer::Binding;
 use crate::view::{Body, Pose, ViewFrame};
 use crate::voxel::blend;
 use crate::voxel::{Complex, Dimension};
 
 /// A solved domain before the camera.
-pub struct Subject {
+pub struct Actor {
     boundary: Arc<Boundary>,
     complex: Arc<Complex>,
     binding: Arc<Binding>,
@@ -49,12 +49,12 @@ enum Shot {
 /// Vertices of a state that the camera is fitted to, about: enough that none sticks out by more than the margin.
 const FITTED: usize = 4000;
 
-impl Subject {
-    /// Takes a solved domain; what came of it is handed back.
-    pub fn new(boundary: Arc<Boundary>, solved: Solved) -> (Self, Outcome) {
+impl Actor {
+    /// Takes a solved domain; `boundary` is what is drawn of it.
+    pub fn new(boundary: Arc<Boundary>, solved: Solved) -> Self {
         let Solved { complex, binding, surfaces, film, linear, importance, outcome, .. } = solved;
         let keyframe = |k: &crate::film::Keyframe| (k.lambda, Arc::new(k.positions.clone()), k.certificate.clone());
-        let subject = Self {
+        Self {
             boundary,
             rest: Arc::new(complex.rest.clone()),
             complex,
@@ -62,13 +62,12 @@ impl Subject {
             surfaces,
             keyframes: film.keyframes().iter().map(keyframe).collect(),
             linear: Arc::new(linear),
-            importance: Arc::new(outcome.importance.clone()),
+            importance: Arc::new(outcome.importance),
             node_importance: Arc::new(importance),
             proven: HashMap::new(),
             places: None,
             faulty: HashMap::new(),
-        };
-        (subject, outcome)
+        }
     }
 
     /// `[keyframes]` λ, rising.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::error::{Error as Refusal, ErrorKind};
 use clap::{ArgMatches, Args, ValueEnum};
 
-use crate::gallery;
+use crate::format::Use;
 use crate::importance::{Layer, Range};
 use crate::settings::Reference;
 use crate::{Error, Result};
@@ -104,14 +104,12 @@ impl SceneOptions {
     /// If the scene file cannot be read or a value is out of range.
     pub fn scene(&self, layers: &[Layer]) -> Result<Scene> {
         let (file, source) = match (&self.scene, &self.source) {
-            (None, Some(Source::File(path))) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ron")) => {
-                (Some(path), None)
-            }
+            (None, Some(Source::File(path))) if Use::Scene.of(path).is_some() => (Some(path), None),
             (file, source) => (file.as_ref(), source.as_ref()),
         };
         let mut draft = match (file, source) {
             (Some(path), _) => Scene::load(path)?.into_draft(),
-            (None, Some(source)) => fresh(source),
+            (None, Some(source)) => Draft::fresh(source),
             (None, None) => return Err(Error::input("nothing to warp; give a mesh file, gallery:NAME or --scene")),
         };
         if let Some(source) = source {
@@ -126,25 +124,6 @@ impl SceneOptions {
         draft.background = self.background.clone().or(draft.background);
         Scene::new(draft)
     }
-}
-
-/// Cells along the longest side of a picture where nothing is said: about as fine as its detail, in a second or two.
-pub(super) const PICTURE_RESOLUTION: u32 = 128;
-
-/// A scene with nothing but a source; a built-in one comes with settings that suit it.
-pub(super) fn fresh(source: &Source) -> Draft {
-    let mut draft = Draft::of(source.clone());
-    if source.is_picture() {
-        draft.resolution = PICTURE_RESOLUTION;
-        draft.fidelity = 1.0;
-    }
-    if let Source::Gallery(name) = source
-        && let Some(entry) = gallery::everything().find(|entry| entry.name == name)
-    {
-        draft.resolution = entry.resolution;
-        draft.fidelity = entry.fidelity;
-    }
-    draft
 }
 
 /// Importance in the order given. Each `--regions` takes the next `--values` after it.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::Regions;
+use super::field::Regions;
 use crate::importance::admission::Admission;
 use crate::picture::Pixels;
 use crate::{Error, Result};
