@@ -9,11 +9,11 @@ use std::{path::Path, sync::Arc};
 use common::{flat, shared, states};
 use glam::{DVec2, DVec3, UVec2};
 use homunculus::boundary::Boundary;
-use homunculus::importance::field::Field;
-use homunculus::picture::{self, Cut, FlatMesh, Picture};
+use homunculus::importance::{self, field::Field};
+use homunculus::picture::{self, Cut, FlatMesh};
 use homunculus::voxel::Flat;
 use homunculus::{
-    run::{Domain, Observer, Progress, Solved, solve},
+    run::{Domain, Observer, Progress, Solved, solve as solve_domain},
     settings::Settings,
 };
 
@@ -166,21 +166,21 @@ fn states_become_as_large_as_their_population() {
     let places = |p: &[DVec3]| p.iter().map(|p| DVec2::new(p.x, height - p.y)).collect::<Vec<_>>();
     let mesh = FlatMesh { rest: places(&solved.boundary.positions), triangles: solved.boundary.triangles.clone() };
     let last = places(&solved.outcome.frames.last().expect("frames").positions);
-    let mut areas = picture::areas(&field, &picture, &mesh, &last);
+    let mut areas = importance::areas(&field, &picture, &mesh, &last);
     // The District of Columbia has four pixels: less than a cell.
     areas.retain(|a| a.name != "District of Columbia");
     assert_eq!(areas.len(), 50);
-    let worst = picture::worst(&areas).expect("states");
-    eprintln!("worst {} {:.4}, median {:.4}", worst.name, worst.error(), picture::median_error(&areas));
+    let worst = importance::worst(&areas).expect("states");
+    eprintln!("worst {} {:.4}, median {:.4}", worst.name, worst.error(), importance::median_error(&areas));
     assert!(worst.error() <= 0.03, "{} is {:.1} % off", worst.name, 100.0 * worst.error());
-    assert!(picture::median_error(&areas) <= 0.005);
+    assert!(importance::median_error(&areas) <= 0.005);
     let asked: f64 = areas.iter().map(|a| a.asked).sum();
     assert!((asked / picture.domain_area() as f64 - 1.0).abs() < 0.1, "the total area is kept");
 
     // Sabotage: the map as it was is far off.
-    let mut unchanged = picture::areas(&field, &picture, &mesh, &mesh.rest);
+    let mut unchanged = importance::areas(&field, &picture, &mesh, &mesh.rest);
     unchanged.retain(|a| a.name != "District of Columbia");
-    assert!(picture::worst(&unchanged).expect("states").error() > 1.0);
+    assert!(importance::worst(&unchanged).expect("states").error() > 1.0);
 }
 
 #[test]
