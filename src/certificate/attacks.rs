@@ -507,3 +507,37 @@ fn sabotage_without_a_bound_signs_are_wrong() {
     let [tetrahedra, planes] = wrong_signs(0.0, 0.0);
     assert!(tetrahedra > 0 && planes > 0, "{tetrahedra} {planes}");
 }
+
+/// A cell whose edges are nearly one line, and which has inverted elements half-way, was proven to keep them all positive; mended
+/// on 28 November 2026. What was taken for the inverse of its mean edges was rounding and nothing else.
+#[test]
+fn counterexample_a_cell_drawn_out_to_a_line() {
+    let ends = LINE.map(|corners| corners.map(|at| Vec3A::from_array(at.map(f32::from_bits))));
+    assert!(not_positive(ends, 512) > 0 && not_positive(ends, 1024) == 0);
+    assert!(!elements::stays_positive_with(elements::MOST_SKEWED, Rounding::PROVEN.product, ends));
+    // Sabotage: as it was.
+    assert!(elements::stays_positive_with(f32::INFINITY, Rounding::PROVEN.product, ends));
+}
+
+const LINE: [[[u32; 3]; 8]; 2] = [
+    [
+        [0x3512_BF18, 0xB51E_8B49, 0x35A4_285C],
+        [0x41ED_62F9, 0x4157_2376, 0x4196_27CD],
+        [0x41ED_62FF, 0x4157_237A, 0x4196_27D4],
+        [0x426D_62FC, 0x41D7_2379, 0x4216_27D0],
+        [0x41ED_62FA, 0x4157_237C, 0x4196_27BD],
+        [0x426D_62FB, 0x41D7_237B, 0x4216_27C5],
+        [0x426D_62FD, 0x41D7_237B, 0x4216_27C9],
+        [0x42B2_0A3D, 0x4221_5A9B, 0x4261_3BAF],
+    ],
+    [
+        [0xB51B_AAF3, 0xB588_48B1, 0xB4F1_68F5],
+        [0x41ED_62FA, 0x4157_2377, 0x4196_27CC],
+        [0x41ED_62FF, 0x4157_237A, 0x4196_27D4],
+        [0x426D_62FC, 0x41D7_2379, 0x4216_27D0],
+        [0x41ED_62FB, 0x4157_237E, 0x4196_27BD],
+        [0x426D_62FA, 0x41D7_237A, 0x4216_27C5],
+        [0x426D_62FD, 0x41D7_237A, 0x4216_27C9],
+        [0x42B2_0A3D, 0x4221_5A9B, 0x4261_3BAE],
+    ],
+];

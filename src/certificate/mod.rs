@@ -78,8 +78,8 @@
 //! |θ| ≤ γₙ = n u / (1 − n u). So a sum of products, computed in any order without cancelling a single term beforehand,
 //! is off by at most `γₙ Σ |terms|` where n is the largest number of roundings that any term goes through. Halving and
 //! changing the sign are exact. Each page counts n and Σ |terms| for its own formulas, and each constant has at least
-//! twice the room that it needs, which pays for the factor 1 / (1 − n u), for bounds that are rounded themselves (some
-//! (1 − u)⁵), and for sizes being measured on rounded differences, `M_true ≤ M / (1 − u)`.
+//! twice the room that it needs (that of midpoints, ten roundings, a fifth more), which pays for the factor
+//! 1 / (1 − n u), for bounds that are rounded themselves (some (1 − u)⁵), and for sizes being measured on rounded differences, `M_true ≤ M / (1 − u)`.
 //!
 //! The model fails below the normal numbers: a product may lose up to half of the smallest number, η = 2⁻¹⁵⁰ in single
 //! precision. (Sums and differences lose nothing there.) Bounds in single precision count only above 2⁻¹²⁶, which is
