@@ -71,7 +71,7 @@ fn vertices(vertex: &Element, boundary: &mut Boundary) -> Result<(), String> {
 }
 
 /// What a colour channel is divided by to be in 0..=1; 1 for what is no colour.
-fn colour_scale(property: &Property) -> f64 {
+pub(crate) fn colour_scale(property: &Property) -> f64 {
     let is_colour = ["red", "green", "blue", "alpha"].iter().any(|c| property.name.ends_with(c));
     if is_colour { property.scalar.largest().unwrap_or(1.0) } else { 1.0 }
 }
