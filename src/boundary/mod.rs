@@ -34,7 +34,7 @@ use crate::error::{Error, Result};
 pub(crate) use format::Kind;
 pub(crate) use obj::{ObjText, face_corners};
 pub(crate) use off::{OffText, content as off_content};
-pub(crate) use ply::colour_scale;
+pub(crate) use ply::{LIST_NAMES, colour_scale};
 pub(crate) use soup::Sets;
 pub(crate) use source::Source;
 pub use split::{Split, split_edges, split_long};

@@ -17,8 +17,12 @@ mod growth;
 mod library;
 pub(crate) mod normals;
 mod obj;
+mod obj_pieces;
 mod off;
+mod off_pieces;
 mod ply;
+mod ply_pieces;
+mod precision;
 pub mod report;
 mod stl;
 pub(crate) mod table;
@@ -33,6 +37,7 @@ use crate::boundary::{Boundary, Kind};
 use crate::error::{Error, Result};
 use crate::file::write_atomically;
 pub use growth::{GrowthFrame, growth};
+pub use precision::{origin, rounded};
 
 /// What the writers of all formats are given.
 pub(crate) struct Surface<'a> {
@@ -84,18 +89,6 @@ impl Surface<'_> {
         }
         match self.positions.iter().position(|p| !p.is_finite()) {
             Some(vertex) => Err(Error::Fault(format!("vertex {vertex} to write is no place"))),
-            None => Ok(()),
-        }
-    }
-
-    /// What only formats with single precision need: each coordinate within its range.
-    fn check_single(&self, path: &Path) -> Result<()> {
-        let too_far = |p: &DVec3| p.abs().max_element() > f64::from(f32::MAX);
-        match self.positions.iter().position(too_far) {
-            Some(vertex) => Err(Error::in_file(
-                path,
-                format!("vertex {vertex} is further out than the format can say; write .obj instead"),
-            )),
             None => Ok(()),
         }
     }

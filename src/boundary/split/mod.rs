@@ -127,6 +127,9 @@ impl Split {
     }
 
     /// This, and after it what became of its result: from the input of the first to the result of the second.
+    ///
+    /// # Panics
+    /// Where `next` comes from another boundary than this one's result.
     #[must_use]
     pub fn then(mut self, next: Self) -> Self {
         let middle = |weights: [f32; 3], of: &[[f32; 3]; 3]| -> [f32; 3] {
