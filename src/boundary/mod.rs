@@ -20,6 +20,7 @@ mod obj;
 mod off;
 mod ply;
 pub(crate) mod ply_table;
+pub(crate) mod precision;
 mod soup;
 pub(crate) mod source;
 mod split;

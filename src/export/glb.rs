@@ -7,9 +7,9 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use serde_json::{Map, Value, json};
 
+use super::Surface;
 use super::normals::Smoothing;
 use super::table::{Slice, Table};
-use super::{Surface, origin};
 use crate::boundary::Boundary;
 use crate::boundary::source::{COLOUR_CHANNELS, NONE, Original};
 use crate::error::{Error, Result};
@@ -178,7 +178,7 @@ impl Glb {
 
 /// The mesh at one moment as a GLB.
 pub(super) fn write(surface: &Surface, path: &Path) -> Result<Vec<u8>> {
-    surface.check_single(origin(surface.boundary), path)?;
+    surface.check_single(surface.boundary.origin(), path)?;
     let mut scene = Scene::new(surface);
     let root = scene.nodes(|_, _, _| {}, |_| {});
     scene.glb.root.extend(root);
@@ -207,7 +207,7 @@ impl<'a> Scene<'a> {
         let smoothing = Smoothing::new(boundary);
         let mut table = Table::new(boundary, &smoothing);
         table.gather(boundary.positions.len() - boundary.source.added.ends.len());
-        let origin = origin(boundary);
+        let origin = boundary.origin();
         let is_gltf = matches!(boundary.source.original, Original::None) && !boundary.source.objects.is_empty();
         let is_neutral = surface.colours.is_some() || (boundary.source.materials.materials.is_empty() && !is_gltf);
         let mut scene =

@@ -8,8 +8,8 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
+use super::Surface;
 use super::glb::Scene;
-use super::{Surface, origin};
 use crate::boundary::Boundary;
 use crate::error::{Error, Result};
 use crate::file::write_atomically;
@@ -60,7 +60,7 @@ pub fn growth(
     for frame in frames {
         let surface = Surface { boundary, positions: frame.positions, colours };
         surface.check()?;
-        surface.check_single(origin(boundary), path)?;
+        surface.check_single(boundary.origin(), path)?;
     }
     let surface = Surface { boundary, positions: rest.positions, colours };
     let mut scene = Scene::new(&surface);

@@ -10,7 +10,14 @@
 //!
 //! # What is not
 //!
-//! glTF scenes come out flat: world positions below nodes without transform, no skins, cameras, lights or animations.
+//! glTF scenes come out flat: world positions below nodes without transform, no skins, cameras, lights or animations. Only shapes
+//! far from the origin, which single precision cannot tell there, have a translation at their nodes.
+//!
+//! # What comes after the input's
+//!
+//! Where long triangles are in pieces ([`crate::boundary::split_long`]) each format has the vertices of the input first, and the
+//! pieces of a face where that stood. An STL has no vertices but corners; in a GLB with several objects each has its own, first
+//! those of the input.
 
 mod glb;
 mod growth;
@@ -37,7 +44,6 @@ use crate::boundary::{Boundary, Kind};
 use crate::error::{Error, Result};
 use crate::file::write_atomically;
 pub use growth::{GrowthFrame, growth};
-pub use precision::{origin, rounded};
 
 /// What the writers of all formats are given.
 pub(crate) struct Surface<'a> {

@@ -97,6 +97,10 @@ impl Table {
         if own == self.rows.len() || self.rows.iter().all(|row| (row.vertex as usize) < own) {
             return;
         }
+        let has_own = |slice: &Slice| slice.triangles.iter().flatten().any(|&row| (row as usize) < own);
+        if !self.parts.iter().all(has_own) {
+            return;
+        }
         let runs = self.runs(|row| row < own);
         let mut run_of_row = vec![NONE; self.rows.len()];
         for (slice, &run) in self.parts.iter().zip(&runs.of_part) {

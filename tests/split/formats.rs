@@ -61,13 +61,15 @@ fn is_same(was: &Boundary, is: &Boundary) -> Result<(), String> {
             is.triangles.len()
         ));
     }
-    if was.positions != is.positions {
+    // Texts have the shortest digits of single precision, which in double precision are another number.
+    let single = |p: &DVec3| p.as_vec3();
+    if !was.positions.iter().map(single).eq(is.positions.iter().map(single)) {
         return Err("vertices moved".into());
     }
     if was.triangles != is.triangles {
         return Err("triangles differ".into());
     }
-    let near = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.006);
+    let near = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.02);
     match (was.base_colours(), is.base_colours()) {
         (None, None) => {}
         (Some(a), Some(b)) if near(a.as_flattened(), b.as_flattened()) => {}
@@ -196,6 +198,10 @@ fn other_formats_hold_the_pieces_of_an_obj() {
     let pieces = in_pieces(&body, 0.9).boundary;
     let (_out, off, _) = writes(&pieces, "a.off");
     assert_eq!((&off.positions, &off.triangles), (&pieces.positions, &pieces.triangles));
+    // The lid would be an object of its own, whose vertices follow it.
+    let (folder, _) = textured();
+    let one = read(folder.path(), "one.obj", BOX.split("o lid").next().unwrap().as_bytes());
+    let pieces = in_pieces(&one, 0.9).boundary;
     let single: Vec<DVec3> = pieces.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect();
     let (_out, ply, _) = writes(&pieces, "a.ply");
     is_same(&pieces, &ply).unwrap();
@@ -217,7 +223,7 @@ fn tables_of_a_ply_grow() {
         property list uchar int flags\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n\
         0 0 0 255 0 0 0 3 1 9 0 0 1\n4.1 0 0 0 0 0 4 7 0 0 0 1\n4.1 4 0 0 0 0 8 7 2 1 2 0 0 1\n0 4 0 255 0 0 4 3 0 0 0 1\n\
         0.1 0.1 0.5 9 9 9 1 5 0 0 0 1\n\
-        5 4 0 1 2 3 8 0 0 1 0 1 1 0 1 4 1 2 3 4\n6 2 0 1 4 0\n7 3 0 1 4 6 0 0 1 0 0.1 0.1 0\n0 1\n";
+        5 4 0 1 2 3 8 0 0 1 0 1 1 0 1 4 1 2 3 4\n6 2 0 1 0 0\n7 3 0 1 4 6 0 0 1 0 0.1 0.1 0\n0 1\n";
     let body = read(folder.path(), "a.ply", text.as_bytes());
     let split = in_pieces(&body, 1.0);
     let pieces = &split.boundary;
@@ -239,7 +245,7 @@ fn tables_of_a_ply_grow() {
     assert_eq!(rows.last().unwrap(), &["0", "1"]);
     // The short one stays; the pieces of each have its material, and its flags; texture is where the vertex is.
     assert_eq!(faces.len(), pieces.triangles.len() + 1);
-    assert_eq!(faces.iter().filter(|row| row[..] == ["6", "2", "0", "1", "4", "0"][..] || row[0] == "6").count(), 1);
+    assert_eq!(faces.iter().filter(|row| row[..] == ["6", "2", "0", "1", "0", "0"][..]).count(), 1);
     for row in faces.iter().filter(|row| row[0] == "5") {
         assert_eq!((row[1], row[5]), ("3", "6"), "{row:?}");
         assert_eq!(row[12..], ["4", "1", "2", "3", "4"], "{row:?}");
@@ -410,7 +416,7 @@ fn closed_pieces_are_closed_in_every_format() {
         let (_out, again, _) = writes(&pieces, &format!("a.{format}"));
         assert_eq!(cracks(&again), 0, "{format}");
         if format != "stl" {
-            assert_eq!((&again.positions, &again.triangles), (&pieces.positions, &pieces.triangles), "{format}");
+            is_same(&pieces, &again).unwrap_or_else(|what| panic!("{format}: {what}"));
         }
     }
 }

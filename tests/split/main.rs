@@ -1,10 +1,6 @@
 //! Contract of `boundary::split`: the pieces are the same surface, without cracks, with all data, and every format holds them: what
 //! is read back has as many vertices and triangles, those of the input first.
-#![expect(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test that cannot be set up has failed; one that is skipped says so"
-)]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -131,7 +127,11 @@ fn pieces_are_the_same_surface_without_cracks() {
         for part in [3.0, 1.0, 0.7, 0.31, 0.1] {
             let split = split_long(&body, part, usize::MAX);
             is_same_surface(&body, &split).unwrap_or_else(|what| panic!("{} at {part}: {what}", body.name));
-            assert!(split.longest <= part && split.longest == longest(&split.boundary), "{}", split.longest);
+            assert!(
+                split.longest <= part && (split.longest - longest(&split.boundary)).abs() < 1e-12,
+                "{}",
+                split.longest
+            );
             assert_eq!(split.added_vertices() > 0, longest(&body) > part);
         }
     }

@@ -6,6 +6,7 @@ use glam::{DMat3, DVec3};
 use homunculus::Error;
 use homunculus::boundary::{self, Boundary, split_long};
 use homunculus::export::{self, GrowthFrame};
+use homunculus::importance::Layer;
 
 use crate::common;
 
@@ -45,8 +46,8 @@ fn a_glb_far_from_the_origin_keeps_its_digits() {
     let single: Vec<DVec3> = positions.iter().map(|p| p.as_vec3().as_dvec3()).collect();
     assert!(farthest(&positions, &single) > 0.1);
     // What is certified comes out to the bit, and a second time too.
-    let certified = export::rounded(&body, &positions);
-    assert_eq!(export::rounded(&body, &certified), certified);
+    let certified = body.rounded(&positions);
+    assert_eq!(body.rounded(&certified), certified);
     for format in ["glb", "obj", "ply", "off"] {
         let path = out.path().join(format!("b.{format}"));
         export::mesh(&body, &certified, None, &path).unwrap();
@@ -57,7 +58,7 @@ fn a_glb_far_from_the_origin_keeps_its_digits() {
     for axis in 0..3 {
         let value = translation[axis].as_f64().unwrap();
         assert_eq!(f64::from(value as f32), value);
-        assert_eq!(value, export::origin(&body)[axis]);
+        assert_eq!(value, body.origin()[axis]);
     }
 }
 
@@ -87,19 +88,38 @@ fn a_growth_far_from_the_origin_keeps_its_digits() {
 }
 
 #[test]
+fn what_is_certified_far_from_the_origin_is_the_file() {
+    let out = tempfile::tempdir().unwrap();
+    let path = out.path().join("a.glb");
+    let body = far();
+    let centre = body.positions[0].to_array();
+    let layers = [Layer::Sphere { centre, radius: 0.6, value: 1.6 }];
+    let outcome = common::warp(&body, &layers, 16, 1.0).unwrap();
+    assert!(outcome.certificate.certified());
+    let positions = &outcome.frames.last().unwrap().positions;
+    assert!(farthest(positions, &body.positions) > 0.05, "nothing grew");
+    export::mesh(&body, positions, None, &path).unwrap();
+    assert_eq!(boundary::read(&path).unwrap().positions, **positions);
+    // Sabotage: what is not rounded comes out otherwise.
+    let other: Vec<DVec3> = positions.iter().map(|&p| p + DVec3::splat(1e-9)).collect();
+    export::mesh(&body, &other, None, &path).unwrap();
+    assert_ne!(boundary::read(&path).unwrap().positions, other);
+}
+
+#[test]
 fn near_the_origin_nothing_is_translated() {
     let out = tempfile::tempdir().unwrap();
     let path = out.path().join("a.glb");
     let near = common::cuboids("near", &[([3.0, 0.0, 0.0], [4.0, 1.0, 1.0])]);
-    assert_eq!(export::origin(&near), DVec3::ZERO);
+    assert_eq!(near.origin(), DVec3::ZERO);
     export::mesh(&near, &near.positions, None, &path).unwrap();
     assert!(json_of(&path)["nodes"][0].get("translation").is_none());
     // A vertex of no triangle says nothing of where the shape is.
     let mut stray = far();
     stray.positions.push(DVec3::ZERO);
-    assert_eq!(export::origin(&stray), export::origin(&far()));
+    assert_eq!(stray.origin(), far().origin());
     let flat = Boundary::from_triangles("none", vec![DVec3::splat(1e9); 3], vec![[0, 1, 2]]);
-    assert_eq!(export::origin(&flat), DVec3::ZERO);
+    assert_eq!(flat.origin(), DVec3::ZERO);
 }
 
 #[test]
@@ -111,7 +131,7 @@ fn stl_refuses_what_it_cannot_say() {
     let text = error.to_string();
     assert!(matches!(error, Error::Input(_)) && text.contains("STL") && text.contains(".obj"), "{text}");
     assert!(!path.exists());
-    let near: Vec<DVec3> = body.positions.iter().map(|&p| p - export::origin(&body)).collect();
+    let near: Vec<DVec3> = body.positions.iter().map(|&p| p - body.origin()).collect();
     export::mesh(&Boundary::from_triangles("near", near.clone(), body.triangles.clone()), &near, None, &path).unwrap();
 }
 
@@ -150,5 +170,5 @@ fn a_statue_in_metres_of_a_grid_comes_out_where_it_is() {
     let shift = grid.positions[0] - local.positions[0];
     let back: Vec<DVec3> = again.positions.iter().map(|&p| p - shift).collect();
     assert!(farthest(&local.positions, &back) < 2e-4, "{}", farthest(&local.positions, &back));
-    assert_eq!(export::origin(&local), DVec3::ZERO);
+    assert_eq!(local.origin(), DVec3::ZERO);
 }
