@@ -99,7 +99,7 @@ fn what_is_certified_far_from_the_origin_is_the_file() {
     let positions = &outcome.frames.last().unwrap().positions;
     assert!(farthest(positions, &body.positions) > 0.05, "nothing grew");
     export::mesh(&body, positions, None, &path).unwrap();
-    assert_eq!(boundary::read(&path).unwrap().positions, **positions);
+    assert_eq!(boundary::read(&path).unwrap().positions, *positions);
     // Sabotage: what is not rounded comes out otherwise.
     let other: Vec<DVec3> = positions.iter().map(|&p| p + DVec3::splat(1e-9)).collect();
     export::mesh(&body, &other, None, &path).unwrap();
