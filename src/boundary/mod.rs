@@ -20,8 +20,10 @@ mod obj;
 mod off;
 mod ply;
 pub(crate) mod ply_table;
+pub(crate) mod precision;
 mod soup;
 pub(crate) mod source;
+mod split;
 mod stl;
 mod triangulate;
 
@@ -33,8 +35,10 @@ use crate::error::{Error, Result};
 pub(crate) use format::Kind;
 pub(crate) use obj::{ObjText, face_corners};
 pub(crate) use off::{OffText, content as off_content};
+pub(crate) use ply::{LIST_NAMES, colour_scale};
 pub(crate) use soup::Sets;
 pub(crate) use source::Source;
+pub use split::{Split, split_edges, split_long};
 pub(crate) use stl::StlKind;
 
 /// The boundary surface B: what was read from a file or modelled by the gallery.

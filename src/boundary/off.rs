@@ -25,6 +25,8 @@ pub(crate) struct OffText {
     pub before: usize,
     /// How many vertices there are.
     pub vertices: usize,
+    /// How many lines of faces there are, those with fewer than three corners included.
+    pub faces: usize,
     /// Whether normals follow the coordinates.
     pub normals: bool,
 }
@@ -142,6 +144,6 @@ fn parse(text: &Arc<str>) -> Result<Boundary, String> {
         boundary.source.corner_normals = boundary.source.polygons.corners.clone();
     }
     boundary.triangulate_polygons();
-    boundary.source.original = Original::Off(OffText { text: text.clone(), before, vertices, normals });
+    boundary.source.original = Original::Off(OffText { text: text.clone(), before, vertices, faces, normals });
     Ok(boundary)
 }

@@ -14,6 +14,9 @@ use crate::error::{Error, Result};
 pub(crate) const UV_NAMES: [[&str; 2]; 4] =
     [["s", "t"], ["u", "v"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
 
+/// Names of the list of a face's corners.
+pub(crate) const LIST_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
+
 /// Reads a PLY.
 pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<Boundary> {
     let table = PlyTable::parse(bytes).map_err(|sentence| Error::in_file(path, sentence))?;
@@ -71,7 +74,7 @@ fn vertices(vertex: &Element, boundary: &mut Boundary) -> Result<(), String> {
 }
 
 /// What a colour channel is divided by to be in 0..=1; 1 for what is no colour.
-fn colour_scale(property: &Property) -> f64 {
+pub(crate) fn colour_scale(property: &Property) -> f64 {
     let is_colour = ["red", "green", "blue", "alpha"].iter().any(|c| property.name.ends_with(c));
     if is_colour { property.scalar.largest().unwrap_or(1.0) } else { 1.0 }
 }
@@ -79,8 +82,7 @@ fn colour_scale(property: &Property) -> f64 {
 /// Appends the faces of an element, with their own texture coordinates where they have some.
 fn faces(element: &Element, is_strip: bool, boundary: &mut Boundary) -> Result<(), String> {
     let name = &element.name;
-    let lists =
-        ["vertex_indices", "vertex_index"].iter().find_map(|n| element.property(n)).filter(|p| p.length.is_some());
+    let lists = LIST_NAMES.iter().find_map(|n| element.property(n)).filter(|p| p.length.is_some());
     let lists = lists.ok_or_else(|| format!("its element {name} has no list vertex_indices; export the mesh again"))?;
     let texcoords = element.property("texcoord").filter(|p| p.length.is_some() && !is_strip);
     let count = boundary.positions.len();

@@ -44,6 +44,18 @@ pub(crate) struct Source {
     pub materials: Materials,
     /// The file itself where it is text that is written again line by line, or a table.
     pub original: Original,
+    /// What there is beyond the file; empty for a boundary as it was read.
+    pub added: Added,
+}
+
+/// What a boundary has beyond its file since its long triangles are in pieces.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Added {
+    /// `[vertices after those of the file]` the two each lies between, with smaller indices; names go over from the first.
+    pub ends: Vec<[u32; 2]>,
+    /// `[polygons]`, or `[triangles]` where these are the faces: the face of the file each is or is a part of. Empty where
+    /// nothing was split.
+    pub faces: Vec<u32>,
 }
 
 /// Faces with any number of corners, flattened.
@@ -142,17 +154,35 @@ impl Polygons {
     }
 }
 
+impl Added {
+    /// How many faces of a file became how many: `[faces of the file]` the range of those that each is now.
+    pub fn ranges(&self) -> Vec<std::ops::Range<usize>> {
+        let mut ranges: Vec<std::ops::Range<usize>> = Vec::new();
+        for (index, &face) in self.faces.iter().enumerate() {
+            ranges.resize((face as usize + 1).max(ranges.len()), index..index);
+            ranges[face as usize].end = index + 1;
+        }
+        ranges
+    }
+}
+
 impl Source {
     /// Whether all indices are in range, for a boundary of so many vertices and triangles.
     pub fn is_sound(&self, vertices: usize, triangles: usize) -> bool {
         let below = |indices: &[u32], count: usize| indices.iter().all(|&i| i == NONE || (i as usize) < count);
         let corners = self.polygons.corners.len();
         let optional = |len: usize, full: usize| len == 0 || len == full;
+        let faces = if self.polygons.len() == 0 { triangles } else { self.polygons.len() };
+        let own = vertices.checked_sub(self.added.ends.len());
         self.polygons.corners.iter().all(|&v| (v as usize) < vertices)
             && optional(self.corner_uvs.len(), corners)
             && optional(self.corner_normals.len(), corners)
             && optional(self.polygon_parts.len(), self.polygons.len())
             && optional(self.triangle_corners.len(), triangles)
+            && optional(self.added.faces.len(), faces)
+            && own.is_some_and(|own| {
+                (own..).zip(&self.added.ends).all(|(v, ends)| ends.iter().all(|&e| (e as usize) < v))
+            })
             && self.triangle_corners.iter().flatten().all(|&c| (c as usize) < corners)
             && below(&self.corner_uvs, self.uvs.len())
             && below(&self.corner_normals, self.normals.len())

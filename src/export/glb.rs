@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde_json::{Map, Value, json};
 
 use super::Surface;
@@ -178,7 +178,7 @@ impl Glb {
 
 /// The mesh at one moment as a GLB.
 pub(super) fn write(surface: &Surface, path: &Path) -> Result<Vec<u8>> {
-    surface.check_single(path)?;
+    surface.check_single(surface.boundary.origin(), path)?;
     let mut scene = Scene::new(surface);
     let root = scene.nodes(|_, _, _| {}, |_| {});
     scene.glb.root.extend(root);
@@ -196,6 +196,8 @@ pub(super) struct Scene<'a> {
     pub table: Table,
     columns: BTreeMap<String, Column>,
     is_neutral: bool,
+    /// What positions are relative to; the nodes add it again.
+    origin: DVec3,
 }
 
 impl<'a> Scene<'a> {
@@ -203,10 +205,13 @@ impl<'a> Scene<'a> {
     pub fn new(surface: &'a Surface<'a>) -> Self {
         let boundary = surface.boundary;
         let smoothing = Smoothing::new(boundary);
-        let table = Table::new(boundary, &smoothing);
+        let mut table = Table::new(boundary, &smoothing);
+        table.gather(boundary.positions.len() - boundary.source.added.ends.len());
+        let origin = boundary.origin();
         let is_gltf = matches!(boundary.source.original, Original::None) && !boundary.source.objects.is_empty();
         let is_neutral = surface.colours.is_some() || (boundary.source.materials.materials.is_empty() && !is_gltf);
-        let mut scene = Self { surface, glb: Glb::default(), smoothing, table, columns: BTreeMap::new(), is_neutral };
+        let mut scene =
+            Self { surface, glb: Glb::default(), smoothing, table, columns: BTreeMap::new(), is_neutral, origin };
         let (places, normals) = scene.moment(surface.positions);
         scene.put("POSITION", places.iter().flat_map(|p| p.to_array()).collect(), 3);
         scene.put("NORMAL", normals.iter().flat_map(|n| n.to_array()).collect(), 3);
@@ -216,11 +221,11 @@ impl<'a> Scene<'a> {
         scene
     }
 
-    /// `[rows]` positions and normals of one moment.
-    pub fn moment(&self, positions: &[glam::DVec3]) -> (Vec<Vec3>, Vec<Vec3>) {
+    /// `[rows]` positions, relative to the origin, and normals of one moment.
+    pub fn moment(&self, positions: &[DVec3]) -> (Vec<Vec3>, Vec<Vec3>) {
         let by_class = self.smoothing.normals(&self.surface.boundary.triangles, positions);
         let rows = &self.table.rows;
-        let places = rows.iter().map(|row| positions[row.vertex as usize].as_vec3()).collect();
+        let places = rows.iter().map(|row| (positions[row.vertex as usize] - self.origin).as_vec3()).collect();
         (places, rows.iter().map(|row| by_class.get(row.class as usize).copied().unwrap_or(Vec3::Z)).collect())
     }
 
@@ -293,6 +298,9 @@ impl<'a> Scene<'a> {
                     .filter(|name| !name.is_empty())
                     .unwrap_or(&self.surface.boundary.name);
                 let mut node = json!({ "mesh": meshes.len(), "name": name });
+                if self.origin != DVec3::ZERO {
+                    node["translation"] = json!(self.origin.to_array());
+                }
                 if let Some(extras) = known.and_then(|o| o.extras.clone()) {
                     node["extras"] = extras;
                 }

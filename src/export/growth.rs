@@ -60,7 +60,7 @@ pub fn growth(
     for frame in frames {
         let surface = Surface { boundary, positions: frame.positions, colours };
         surface.check()?;
-        surface.check_single(path)?;
+        surface.check_single(boundary.origin(), path)?;
     }
     let surface = Surface { boundary, positions: rest.positions, colours };
     let mut scene = Scene::new(&surface);

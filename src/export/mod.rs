@@ -10,15 +10,26 @@
 //!
 //! # What is not
 //!
-//! glTF scenes come out flat: world positions below nodes without transform, no skins, cameras, lights or animations.
+//! glTF scenes come out flat: world positions below nodes without transform, no skins, cameras, lights or animations. Only shapes
+//! far from the origin, which single precision cannot tell there, have a translation at their nodes.
+//!
+//! # What comes after the input's
+//!
+//! Where long triangles are in pieces ([`crate::boundary::split_long`]) each format has the vertices of the input first, and the
+//! pieces of a face where that stood. An STL has no vertices but corners; in a GLB with several objects each has its own, first
+//! those of the input.
 
 mod glb;
 mod growth;
 mod library;
 pub(crate) mod normals;
 mod obj;
+mod obj_pieces;
 mod off;
+mod off_pieces;
 mod ply;
+mod ply_pieces;
+mod precision;
 pub mod report;
 mod stl;
 pub(crate) mod table;
@@ -83,18 +94,6 @@ impl Surface<'_> {
         }
         match self.positions.iter().position(|p| !p.is_finite()) {
             Some(vertex) => Err(Error::Fault(format!("vertex {vertex} to write is no place"))),
-            None => Ok(()),
-        }
-    }
-
-    /// What only formats with single precision need: each coordinate within its range.
-    fn check_single(&self, path: &Path) -> Result<()> {
-        let too_far = |p: &DVec3| p.abs().max_element() > f64::from(f32::MAX);
-        match self.positions.iter().position(too_far) {
-            Some(vertex) => Err(Error::in_file(
-                path,
-                format!("vertex {vertex} is further out than the format can say; write .obj instead"),
-            )),
             None => Ok(()),
         }
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::normals::Smoothing;
-use super::{Surface, library, number, srgb};
+use super::{Surface, library, number, obj_pieces, srgb};
 use crate::boundary::source::{NONE, Original};
 use crate::boundary::{ObjText, face_corners};
 use crate::error::Result;
@@ -12,7 +12,8 @@ use crate::error::Result;
 /// The mesh as an OBJ; its library and textures are written beside `path`.
 pub(super) fn write(surface: &Surface, path: &Path) -> Result<Vec<u8>> {
     match &surface.boundary.source.original {
-        Original::Obj(text) => again(surface, text, path),
+        Original::Obj(text) if surface.boundary.source.added.faces.is_empty() => again(surface, text, path),
+        Original::Obj(text) => obj_pieces::again(surface, text, path),
         _ => anew(surface, path),
     }
 }
@@ -119,12 +120,12 @@ fn anew(surface: &Surface, path: &Path) -> Result<Vec<u8>> {
     Ok(out.into_bytes())
 }
 
-fn put_vertex(out: &mut String, surface: &Surface, vertex: usize) {
+pub(super) fn put_vertex(out: &mut String, surface: &Surface, vertex: usize) {
     let [x, y, z] = surface.positions[vertex].to_array().map(number);
     let _ = write!(out, "v {x} {y} {z}");
 }
 
-fn put_colour(out: &mut String, tint: [f32; 4]) {
+pub(super) fn put_colour(out: &mut String, tint: [f32; 4]) {
     let [r, g, b, _] = srgb(tint);
     let _ = write!(out, " {r:.6} {g:.6} {b:.6}");
 }
@@ -135,7 +136,7 @@ pub(super) fn one_line(name: &str) -> String {
 }
 
 /// Normals of the corners of polygons, where the input had normals.
-struct CornerNormals {
+pub(super) struct CornerNormals {
     /// `[classes]`
     normals: Vec<glam::Vec3>,
     /// `[corners]`
@@ -143,7 +144,8 @@ struct CornerNormals {
 }
 
 impl CornerNormals {
-    fn new(surface: &Surface) -> Option<Self> {
+    /// `None` where the input had none.
+    pub fn new(surface: &Surface) -> Option<Self> {
         let boundary = surface.boundary;
         let source = &boundary.source;
         if source.corner_normals.is_empty() {
@@ -157,14 +159,15 @@ impl CornerNormals {
         Some(Self { normals: smoothing.normals(&boundary.triangles, surface.positions), class_of })
     }
 
-    fn put_table(&self, out: &mut String) {
+    /// The `vn` lines.
+    pub fn put_table(&self, out: &mut String) {
         for normal in &self.normals {
             let _ = writeln!(out, "vn {:.5} {:.5} {:.5}", normal.x, normal.y, normal.z);
         }
     }
 
     /// From 1, as OBJ counts.
-    fn index(&self, corner: usize) -> u32 {
+    pub fn index(&self, corner: usize) -> u32 {
         self.class_of[corner] + 1
     }
 }

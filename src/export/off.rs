@@ -2,14 +2,16 @@
 
 use std::fmt::Write as _;
 
-use super::{Surface, byte, number, srgb};
+use super::{Surface, byte, number, off_pieces, srgb};
 use crate::boundary::source::Original;
 use crate::boundary::{OffText, off_content};
 
 /// The mesh as an OFF.
 pub(super) fn write(surface: &Surface) -> Vec<u8> {
+    let is_split = !surface.boundary.source.added.faces.is_empty();
     match &surface.boundary.source.original {
-        Original::Off(text) if surface.colours.is_none() => again(surface, text),
+        Original::Off(text) if surface.colours.is_none() && !is_split => again(surface, text),
+        Original::Off(text) if surface.colours.is_none() => off_pieces::again(surface, text),
         _ => anew(surface),
     }
 }

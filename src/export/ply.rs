@@ -1,6 +1,6 @@
 //! PLY: the input's own tables with other numbers, or a new binary file.
 
-use super::{Surface, byte, srgb};
+use super::{Surface, byte, ply_pieces, srgb};
 use crate::boundary::ply_table::{Element, Encoding, PlyTable, Property, Scalar};
 use crate::boundary::source::{COLOUR_CHANNELS, NONE, Original};
 
@@ -14,13 +14,19 @@ pub(super) fn write(surface: &Surface) -> Vec<u8> {
 
 /// The input's tables with other positions, normals and colours, and attributes that came after reading.
 fn again(surface: &Surface, mut table: PlyTable) -> PlyTable {
+    let is_far = surface.is_far();
+    if !surface.boundary.source.added.faces.is_empty() {
+        ply_pieces::in_pieces(&surface.boundary.source, &mut table);
+    }
     let Some(vertex) = table.elements.iter_mut().find(|e| e.name == "vertex") else { return anew(surface) };
     for property in &mut vertex.properties {
         let axis = ["x", "y", "z"].iter().position(|&name| name == property.name);
         if let (Some(axis), None) = (axis, property.length) {
             property.values = surface.positions.iter().map(|p| p[axis]).collect();
-            // Coordinates in whole numbers cannot hold a warped place.
-            property.scalar = if property.scalar.largest().is_some() { Scalar::F64 } else { property.scalar };
+            // Coordinates in whole numbers cannot hold a warped place, those in single precision none far from the origin.
+            let is_single = || property.values.iter().all(|&value| f64::from(value as f32) == value);
+            let is_too_coarse = property.scalar.largest().is_some() || is_far && !is_single();
+            property.scalar = if is_too_coarse { Scalar::F64 } else { property.scalar };
         }
     }
     if ["nx", "ny", "nz"].iter().all(|name| vertex.property(name).is_some()) {

@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use glam::DVec3;
+
 use super::normals::unit_normal;
 use super::{Surface, number};
 use crate::boundary::StlKind;
@@ -19,7 +21,8 @@ pub(super) fn write(surface: &Surface, path: &Path) -> Result<Vec<u8>> {
 }
 
 fn binary(surface: &Surface, header: &[u8], extras: &[[u8; 2]], path: &Path) -> Result<Vec<u8>> {
-    surface.check_single(path)?;
+    surface.check_single(DVec3::ZERO, path)?;
+    let faces = &surface.boundary.source.added.faces;
     let triangles = &surface.boundary.triangles;
     let count = u32::try_from(triangles.len())
         .map_err(|_| Error::in_file(path, "it has more triangles than an STL can; write .ply instead"))?;
@@ -31,7 +34,8 @@ fn binary(surface: &Surface, header: &[u8], extras: &[[u8; 2]], path: &Path) -> 
         for vector in [unit_normal(triangle, surface.positions)].iter().chain(&corners) {
             out.extend(vector.as_vec3().to_array().into_iter().flat_map(f32::to_le_bytes));
         }
-        out.extend(extras.get(index).copied().unwrap_or_default());
+        let face = faces.get(index).map_or(index, |&face| face as usize);
+        out.extend(extras.get(face).copied().unwrap_or_default());
     }
     Ok(out)
 }

@@ -37,6 +37,14 @@ pub(crate) struct Slice {
     pub window: Range<usize>,
 }
 
+/// Parts of one object that share rows.
+struct Runs {
+    /// The object, and the rows from the first to the last.
+    runs: Vec<(u32, Range<usize>)>,
+    /// `[parts]` index into `runs`.
+    of_part: Vec<usize>,
+}
+
 impl Table {
     /// The table of a boundary.
     pub fn new(boundary: &Boundary, smoothing: &Smoothing) -> Self {
@@ -81,6 +89,49 @@ impl Table {
         table
     }
 
+    /// Puts the rows of added vertices, and of further combinations, behind those of the object they belong to, so that objects
+    /// which had rows of their own have them still: in each the vertices of the file come first, in their order.
+    ///
+    /// `own`: how many vertices the file has. Nothing happens where that is all, or objects share vertices.
+    pub fn gather(&mut self, own: usize) {
+        if own == self.rows.len() || self.rows.iter().all(|row| (row.vertex as usize) < own) {
+            return;
+        }
+        let has_own = |slice: &Slice| slice.triangles.iter().flatten().any(|&row| (row as usize) < own);
+        if !self.parts.iter().all(has_own) {
+            return;
+        }
+        let runs = self.runs(|row| row < own);
+        let mut run_of_row = vec![NONE; self.rows.len()];
+        for (slice, &run) in self.parts.iter().zip(&runs.of_part) {
+            for &row in slice.triangles.iter().flatten() {
+                let slot = &mut run_of_row[row as usize];
+                if *slot != NONE && *slot != run as u32 {
+                    return;
+                }
+                *slot = run as u32;
+            }
+        }
+        // What no triangle uses stays behind what comes before it.
+        let mut last = 0;
+        for slot in &mut run_of_row {
+            *slot = if *slot == NONE { last } else { *slot };
+            last = *slot;
+        }
+        if !run_of_row[..own].is_sorted() {
+            return;
+        }
+        let mut order: Vec<u32> = (0..self.rows.len() as u32).collect();
+        order.sort_by_key(|&row| run_of_row[row as usize]);
+        let mut moved_to = vec![0; order.len()];
+        (0..).zip(&order).for_each(|(new, &old)| moved_to[old as usize] = new);
+        self.rows = order.iter().map(|&old| self.rows[old as usize]).collect();
+        for row in self.parts.iter_mut().flat_map(|slice| &mut slice.triangles).flatten() {
+            *row = moved_to[*row as usize];
+        }
+        self.open_windows();
+    }
+
     /// Whether each object has rows of its own, so that it can be a mesh of its own.
     pub fn is_separable(&self) -> bool {
         self.parts
@@ -97,10 +148,22 @@ impl Table {
     /// Gives each run of parts of one object that share rows its own window, if these come in order; else all rows to all.
     fn open_windows(&mut self) {
         let total = self.rows.len();
+        let Runs { runs, of_part } = self.runs(|_| true);
+        let in_order = runs.windows(2).all(|pair| pair[0].1.end <= pair[1].1.start && (pair[0].0 <= pair[1].0));
+        for (slice, &run) in self.parts.iter_mut().zip(&of_part) {
+            // Rows that no triangle uses belong to the run before them, so that none is lost.
+            let start = if run == 0 { 0 } else { runs[run].1.start };
+            let end = runs.get(run + 1).map_or(total, |next| next.1.start);
+            slice.window = if in_order { start..end } else { 0..total };
+        }
+    }
+
+    /// Runs of parts of one object that share rows, of those that count.
+    fn runs(&self, counts: impl Fn(usize) -> bool) -> Runs {
         let mut runs: Vec<(u32, Range<usize>)> = Vec::new();
-        let mut run_of = Vec::new();
+        let mut of_part = Vec::new();
         for slice in &self.parts {
-            let rows = || slice.triangles.iter().flatten().map(|&r| r as usize);
+            let rows = || slice.triangles.iter().flatten().map(|&r| r as usize).filter(|&row| counts(row));
             let own = rows().min().unwrap_or(0)..rows().max().map_or(0, |m| m + 1);
             match runs.last_mut() {
                 Some((object, run)) if *object == slice.part.object && own.start < run.end && run.start < own.end => {
@@ -108,15 +171,9 @@ impl Table {
                 }
                 _ => runs.push((slice.part.object, own)),
             }
-            run_of.push(runs.len() - 1);
+            of_part.push(runs.len() - 1);
         }
-        let in_order = runs.windows(2).all(|pair| pair[0].1.end <= pair[1].1.start && (pair[0].0 <= pair[1].0));
-        for (slice, &run) in self.parts.iter_mut().zip(&run_of) {
-            // Rows that no triangle uses belong to the run before them, so that none is lost.
-            let start = if run == 0 { 0 } else { runs[run].1.start };
-            let end = runs.get(run + 1).map_or(total, |next| next.1.start);
-            slice.window = if in_order { start..end } else { 0..total };
-        }
+        Runs { runs, of_part }
     }
 }
 
@@ -126,7 +183,6 @@ fn parts_of_triangles(boundary: &Boundary) -> Vec<u32> {
     if source.polygon_parts.is_empty() || source.triangle_corners.is_empty() {
         return Vec::new();
     }
-    let of_corner = (0..source.polygons.len()).flat_map(|p| source.polygons.range(p).map(move |_| p));
-    let of_corner: Vec<u32> = of_corner.map(|polygon| source.polygon_parts[polygon]).collect();
-    source.triangle_corners.iter().map(|corners| of_corner[corners[0] as usize]).collect()
+    let part = |polygon: u32| source.polygon_parts[polygon as usize];
+    source.polygons_of_triangles().into_iter().map(part).collect()
 }

@@ -16,7 +16,7 @@ use glam::{DVec3, IVec3, Vec3A};
 use rayon::prelude::*;
 
 use crate::{
-    boundary::Boundary,
+    boundary::{Boundary, precision::rounded},
     voxel::{Complex, Grid},
 };
 
@@ -34,16 +34,14 @@ pub struct Binding {
     /// V, refined.
     rest_nodes: Vec<Vec3A>,
     grid: Grid,
-    /// Whether results are rounded to f32, as files hold them.
+    /// What files of single precision hold places relative to: zero near the origin.
+    origin: DVec3,
+    /// Whether results are rounded to f32, relative to `origin`, as files hold them.
     single: bool,
 }
 
 /// Vertices per parallel task.
 const VERTICES_PER_TASK: usize = 2048;
-
-/// Coordinates are rounded to f32 when that moves nothing by more than about 1e-4 of a cell at 256 cells: when the
-/// shape is not further from the origin than this many of its own sizes. Otherwise they stay f64.
-const FAR_FROM_ORIGIN: f64 = 16.0;
 
 /// Looks up cells by position.
 pub(crate) struct CellIndex<'a> {
@@ -131,16 +129,22 @@ impl Binding {
         let refined = refinement.reduced(&mut nodes);
         let grid = complex.grid;
         let extent = grid.cells.as_dvec3() * grid.cell_size;
-        let far = (grid.origin.abs() + extent).max_element() > FAR_FROM_ORIGIN * extent.max_element();
+        let origin = boundary.origin();
         let representable = extent.max_element() > 1.0e-30 && extent.max_element() < 1.0e30;
         Self {
             nodes,
             weights,
-            rest: boundary.positions.clone(),
+            // Far out, what does not move is written relative to that origin as well.
+            rest: if origin == DVec3::ZERO {
+                boundary.positions.clone()
+            } else {
+                boundary.rounded(&boundary.positions)
+            },
             rest_nodes: refined.apply(&complex.rest),
             refined,
             grid,
-            single: !far && representable,
+            origin,
+            single: representable,
         }
     }
 
@@ -174,10 +178,11 @@ impl Binding {
             return self.rest[v];
         }
         let p = self.rest[v] + self.grid.cell_size * moved;
-        if self.single { p.as_vec3().as_dvec3() } else { p }
+        if self.single { rounded(p, self.origin) } else { p }
     }
 
-    /// B' of a state for comparing its triangles: source units where files hold f32, else cells.
+    /// B' of a state for comparing its triangles: source units, relative to what files hold f32 relative to; cells where f32 has
+    /// no such numbers.
     pub fn apply_for_check(&self, nodes: &[Vec3A]) -> Vec<Vec3A> {
         let refined = self.refined.apply(nodes);
         (0..self.nodes.len())
@@ -185,7 +190,7 @@ impl Binding {
             .with_min_len(VERTICES_PER_TASK)
             .map(|v| {
                 let p = self.vertex(v, &refined);
-                if self.single { p.as_vec3a() } else { self.grid.lattice_from_source(p).as_vec3a() }
+                if self.single { (p - self.origin).as_vec3a() } else { self.grid.lattice_from_source(p).as_vec3a() }
             })
             .collect()
     }
