@@ -301,7 +301,7 @@ fn bad_input_ends_with_2_in_one_sentence_and_writes_nothing() {
         ("warp bar.obj --save-scene v.csv", ".ron"),
         ("warp bar.obj --values bars.obj -o bars.obj", "another name"),
         ("warp bar.obj -o x.glb --growth x.glb", "another name"),
-        ("warp bar.obj -o out.txt", ".glb, .obj, .ply, .stl, .off"),
+        ("warp bar.obj -o out.txt", ".glb, .obj, .ply, .stl or .off"),
         ("warp bar.obj -o out", ".glb"),
         ("warp bar.obj --growth g.obj", ".glb"),
         ("warp bar.obj -o nowhere/out.obj", "nowhere does not exist"),
@@ -455,5 +455,15 @@ fn the_gallery_is_listed_a_line_each() {
     assert!(run.status.success());
     for name in ["homunculus", "hand", "elephant", "crocodile"] {
         assert!(text.lines().any(|line| line.starts_with(&format!("gallery:{name} "))), "{name} in {text}");
+    }
+}
+
+#[test]
+fn threads_are_as_many_as_asked_for_of_what_is_built_in_too() {
+    let folder = folder();
+    for scene in ["gallery:snake", "gallery:hand"] {
+        let output =
+            run(folder.path(), &format!("warp {scene} --resolution 16 --keys 1 --threads 1 --report r.json -q"));
+        assert_eq!(output.status.code(), Some(0), "{scene}: {}", text(&output.stderr));
     }
 }

@@ -21,14 +21,20 @@ pub(super) struct Loaded {
     quiet: bool,
 }
 
+/// From here on Ctrl-C asks rather than kills, and as many threads work as were asked for. Comes before anything is read:
+/// what is built in is decoded by threads as soon as it is found.
+pub(super) fn begin(options: &SceneOptions) -> Result<()> {
+    if let Some(threads) = options.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
+        pool.build_global().map_err(|e| Error::Fault(format!("starting {threads} threads: {e}")))?;
+    }
+    cancel::listen();
+    Ok(())
+}
+
 impl Loaded {
-    /// Reads what a scene names. From here on Ctrl-C asks rather than kills, and as many threads work as were asked for.
+    /// Reads what a scene names.
     pub fn new(scene: &Scene, options: &SceneOptions, found: Box<dyn Found>) -> Result<Self> {
-        if let Some(threads) = options.threads {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
-            pool.build_global().map_err(|e| Error::Fault(format!("starting {threads} threads: {e}")))?;
-        }
-        cancel::listen();
         let subject = subject::painted(found.open(scene)?, &scene.strokes)?;
         let mut warnings = subject.warnings();
         if subject::asks_for_nothing(scene) {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::load::{Loaded, only_of_pictures};
+use super::load::{self, Loaded, only_of_pictures};
 use super::options::{RecordOptions, RecordOrder};
 use super::outputs::{check_extension, check_places};
 use super::{Verdict, note, progress, say};
@@ -32,6 +32,7 @@ struct Beside<'a> {
 pub(super) fn run(order: &RecordOrder) -> Result<Verdict> {
     let options = &order.options;
     let scene = options.scene.scene(&order.layers)?;
+    load::begin(&options.scene)?;
     let found = subject::find(&scene.source)?;
     let settings = options.settings(found.kind().is_flat())?;
     only_of_pictures(found.kind(), "--background", scene.background.is_some())?;

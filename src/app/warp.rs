@@ -1,6 +1,6 @@
 //! `homunculus warp`: from a scene to certified files.
 
-use super::load::{Loaded, only_of_pictures};
+use super::load::{self, Loaded, only_of_pictures};
 use super::options::WarpOrder;
 use super::outputs::{self, Outputs};
 use super::{Verdict, cancel, say};
@@ -11,6 +11,7 @@ use crate::{Error, Result};
 pub(super) fn run(order: &WarpOrder) -> Result<Verdict> {
     let options = &order.options;
     let scene = order.scene()?;
+    load::begin(&options.scene)?;
     let found = subject::find(&scene.source)?;
     let of_pictures = options.scale.is_some() || scene.background.is_some();
     only_of_pictures(found.kind(), "--scale and --background", of_pictures)?;
