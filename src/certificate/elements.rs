@@ -10,7 +10,9 @@
 //! *A motion, by the volume.* Differences of corners are linear in τ, so the volume is a cubic polynomial. With edges
 //! a, b, c at the start and a', b', c' at the end, its Bernstein coefficients are
 //!
-//!     [a b c],  ([a' b c] + [a b' c] + [a b c']) / 3,  ([a' b' c] + [a' b c'] + [a b' c']) / 3,  [a' b' c'].
+//! ```text
+//! [a b c],  ([a' b c] + [a b' c] + [a b c']) / 3,  ([a' b' c] + [a' b c'] + [a b' c']) / 3,  [a' b' c'].
+//! ```
 //!
 //! A polynomial is nowhere less than the least of
 //! its coefficients; where one is not positive, it is cut into halves (de Casteljau), of which each has coefficients of
@@ -29,7 +31,9 @@
 //!
 //! Let B be the inverse, as computed, of the mean M of the F, and m its longest column. First,
 //!
-//!     ‖B F − I‖ ≤ ‖B‖ ‖F − M‖ + ‖B M − I‖.
+//! ```text
+//! ‖B F − I‖ ≤ ‖B‖ ‖F − M‖ + ‖B M − I‖.
+//! ```
 //!
 //! The second term is rounding, but it may be large: with columns a, b, c
 //!
