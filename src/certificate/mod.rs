@@ -11,18 +11,18 @@
 //! 1. every element is positively oriented,
 //! 2. the skin has no two faces that meet outside what they share,
 //! 3. no solid lies inside another one, and
-//! 4. the complement of each solid hangs together (it has no cavity, in the plane no hole),
+//! 4. of the parts that the skin of each solid has, one alone is turned outward: bounds its solid from outside,
 //!
 //! then φ is injective on the interior of C and on the skin.
 //!
-//! *Proof.* Take one solid K. By 2, φ maps ∂K one to one, so that φ(∂K) is the same space as ∂K, and its complement has
-//! as many parts (Alexander duality: their number depends on the space alone, not on how it lies). At rest these are
-//! the interior of K and, by 4, one part outside; so φ(∂K) has exactly two parts as complement, of which one is
-//! bounded. For a point y that is in neither φ(∂K) nor the image of an element's boundary, the degree of φ at y is the
-//! number of elements over y with positive orientation less those with negative, by 1 simply the number of elements
-//! over y. The degree is constant in each part of the complement of φ(∂K): 0 in the unbounded one, since φ(K) is
-//! bounded; and it changes by one across a face of the skin, which has an element on one side. So it is 1 in the
-//! bounded part, being no negative number: one element is over almost every point of it, and none over any outside. Two
+//! *Proof.* Take one solid K. For a point y that is in neither φ(∂K) nor the image of an element's boundary, the degree
+//! of φ at y is the number of elements over y with positive orientation less those with negative, by 1 simply the number
+//! of elements over y. It is also the number of turns of φ(∂K) around y: the sum over the parts of the skin. By 2 each
+//! part is mapped one to one, to a closed surface (in the plane a closed line) that has an inside and an outside
+//! (Jordan and Brouwer); it turns around the points inside once, by +1 where it is turned outward and by −1 where it is
+//! turned inward, and around those outside not at all. (Parts that touch themselves at a node, where cells hang together
+//! by it alone, can be drawn off it by as little as one likes.) By 4 one part alone contributes +1, so that the degree
+//! is at most 1 everywhere: at most one element is over any such point. Two
 //! inner points of K with one image y would both have small neighbourhoods whose images cover all points near y, since
 //! the degree of φ around each is positive; then two elements would be over most of these. There are none. Two solids:
 //! their skins have nothing in common but what they share, so that the inside of one either lies in the inside of the
@@ -35,12 +35,11 @@
 //! and the interpenetration of matter*, Proc. Royal Society of Edinburgh 88A (1981).
 //!
 //! Condition 4 is needed. A ring can be laid twice over a disc around two points where the angles of its elements sum
-//! up to two turns, all elements positive and both its edges without a crossing, the inner one turned inside out.
-//! Bodies have no cavities, since voxelization fills them. Pictures have holes, and for these a single state is not
-//! proven by conditions 1 to 3: it takes a *motion* from a state that is, such as the rest state. While the skin moves
-//! without meeting itself, the degree at a point changes only when the skin passes over it, and by the same amount at
-//! every face for ever; so what was injective stays it. [`certify_motion`] proves motions, and the keyframes of a
-//! [film](crate::film) hang together by such proofs from the rest state on.
+//! up to two turns, all elements positive and both its edges without a crossing: the inner one is then turned inside
+//! out, and is outward too. Bodies have no cavities, since voxelization fills them, so their solids have one part of
+//! skin; pictures have holes, and of these the condition is checked. A *motion* from a state that is injective keeps it
+//! so without being asked: while the skin moves without meeting itself, no part of it is turned. [`certify_motion`] proves
+//! motions, and the keyframes of a [film](crate::film) hang together by such proofs from the rest state on.
 //!
 //! The surface that is written, B', is made of flat triangles between vertices that φ moves. It is another map, so it
 //! is checked too: it must have no crossing that the input had not. In the plane its triangles must be positively
@@ -162,7 +161,7 @@ impl Certificate {
         self.surface_crossings
     }
 
-    /// Solids that lie inside another one without crossing its skin.
+    /// Solids that lie inside another one, or may lie over themselves, without a skin that crosses.
     pub fn enclosed(&self) -> usize {
         self.enclosed
     }
@@ -245,11 +244,48 @@ fn conclude(
     Certificate {
         inverted: elements.inverted + inverted,
         crossings: crossings.skin.len(),
-        enclosed: enclosed_solids(complex, positions).len(),
+        enclosed: enclosed_solids(complex, positions).len() + overlaid_solids(complex, positions).len(),
         surface_crossings: crossings.written.as_ref().map_or(0, Vec::len),
         min_volume_ratio: elements.least,
         worst,
     }
+}
+
+/// Solids of a flat complex that may lie over themselves although no skin crosses: more than one of the closed lines around
+/// them is turned outward, with the inside on its left and inside of it. A line counts as such unless its area is proven to
+/// be negative.
+///
+/// Twice the area is a sum of n products of differences, taken from one of its points: in double precision it is off by at
+/// most (n + 3) u Σ |terms|, and the differences of single numbers by u each.
+fn overlaid_solids(complex: &Complex, positions: &[Vec3A]) -> Vec<u32> {
+    let lines = complex.outline_of_face.iter().max().map_or(0, |most| *most as usize + 1);
+    if lines < 2 {
+        return Vec::new();
+    }
+    #[derive(Clone, Copy)]
+    struct Line {
+        origin: DVec3,
+        solid: u32,
+        area: f64,
+        size: f64,
+        count: f64,
+    }
+    let mut found: Vec<Option<Line>> = vec![None; lines];
+    for ((face, &line), &cell) in complex.faces.iter().zip(&complex.outline_of_face).zip(&complex.cell_of_face) {
+        let [a, b] = [face[0], face[1]].map(|v| positions[v as usize].as_dvec3());
+        let solid = complex.solid[cell as usize];
+        let line = found[line as usize].get_or_insert(Line { origin: a, solid, area: 0.0, size: 0.0, count: 0.0 });
+        let (a, b) = (a - line.origin, b - line.origin);
+        line.area += a.x * b.y - a.y * b.x;
+        line.size += (a.x * b.y).abs() + (a.y * b.x).abs();
+        line.count += 1.0;
+    }
+    let is_outward = |line: &Line| line.area >= -(line.count + 8.0) * f64::EPSILON * line.size;
+    let mut outward: Vec<u32> = found.iter().flatten().filter(|line| is_outward(line)).map(|line| line.solid).collect();
+    outward.sort_unstable();
+    let mut overlaid: Vec<u32> = outward.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
+    overlaid.dedup();
+    overlaid
 }
 
 /// Solids that lie inside another one: one point of each is looked at, which tells for all of it as long as no skins
@@ -325,5 +361,34 @@ fn winding<'a>(dimension: Dimension, faces: impl Iterator<Item = &'a [u32; 3]>, 
                 .sum();
             angle / (4.0 * std::f64::consts::PI)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::voxel::Grid;
+    use glam::UVec3;
+
+    #[test]
+    fn a_hole_that_is_turned_outward_is_seen() {
+        let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::new(5, 5, 1) };
+        let inside: Vec<bool> = (0..25).map(|k| !((1..4).contains(&(k % 5)) && (1..4).contains(&(k / 5)))).collect();
+        let complex = Complex::from_flat_cells(grid, &inside);
+        assert!(overlaid_solids(&complex, &complex.rest).is_empty());
+        assert!(certify(&complex, &Surfaces::skin_of(&complex), &complex.rest).certified());
+        // As it lies where a ring is laid twice over a disc: the line around the hole the other way about.
+        let is_at_hole = |p: &Vec3A| (1.0..=4.0).contains(&p.x) && (1.0..=4.0).contains(&p.y);
+        let turned = complex.rest.iter().map(|p| if is_at_hole(p) { Vec3A::new(5.0 - p.x, p.y, 0.0) } else { *p });
+        let turned: Vec<Vec3A> = turned.collect();
+        assert_eq!(overlaid_solids(&complex, &turned), [0]);
+        // Sabotage: inside out as a whole it is one line again that is outward, and its elements are what is wrong.
+        let mirrored: Vec<Vec3A> = complex.rest.iter().map(|p| Vec3A::new(-p.x, p.y, 0.0)).collect();
+        assert!(overlaid_solids(&complex, &mirrored).is_empty());
+        assert!(certify(&complex, &Surfaces::skin_of(&complex), &mirrored).inverted() > 0);
+        // A hole that has shrunk to nothing is not proven to lie as it did.
+        let shrunk: Vec<Vec3A> =
+            complex.rest.iter().map(|p| if is_at_hole(p) { Vec3A::new(2.5, 2.5, 0.0) } else { *p }).collect();
+        assert_eq!(overlaid_solids(&complex, &shrunk), [0]);
     }
 }

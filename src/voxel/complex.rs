@@ -105,6 +105,8 @@ pub struct Complex {
     pub faces: Vec<[u32; 3]>,
     /// `[faces]` the cell a face belongs to.
     pub cell_of_face: Vec<u32>,
+    /// `[faces]` in the plane, which of the closed lines of the outline each belongs to; empty in space.
+    pub outline_of_face: Vec<u32>,
     /// `[cells]` index of the solid (part of C that hangs together by faces, not by nodes or edges alone) it belongs to.
     pub solid: Vec<u32>,
     /// Number of solids.
@@ -198,6 +200,7 @@ impl Complex {
             multiplicity: vec![[0; NEIGHBOURS]; rest.len()],
             faces: Vec::new(),
             cell_of_face: Vec::new(),
+            outline_of_face: Vec::new(),
             solid: Vec::new(),
             solids: 0,
             on_boundary: vec![false; rest.len()],
@@ -208,7 +211,10 @@ impl Complex {
         };
         complex.link();
         match dimension {
-            Dimension::Two => complex.outline(is_inside),
+            Dimension::Two => {
+                complex.outline(is_inside);
+                complex.label_outlines();
+            }
             Dimension::Three => complex.skin(is_inside),
         }
         for &node in complex.faces.iter().flatten() {
@@ -277,6 +283,40 @@ impl Complex {
                 }
             }
         }
+    }
+
+    /// Labels the closed lines that boundary edges make: at a node each goes on along the cells that hang together there, so
+    /// that parts that only touch at it keep lines of their own.
+    fn label_outlines(&mut self) {
+        let mut starting: Vec<(u32, u32)> = self.faces.iter().zip(0..).map(|(face, k)| (face[0], k)).collect();
+        starting.sort_unstable();
+        let after = |face: u32| {
+            let node = self.faces[face as usize][1];
+            let around = &self.cells_around[node as usize];
+            let corner_of = |face: u32| (0..4).find(|&k| around[k] == self.cell_of_face[face as usize]);
+            let mut fan = [false; 4];
+            let mut stack: Vec<usize> = corner_of(face).into_iter().collect();
+            while let Some(corner) = stack.pop() {
+                if !std::mem::replace(&mut fan[corner], true) {
+                    stack.extend([corner ^ 1, corner ^ 2].into_iter().filter(|&next| around[next] != u32::MAX));
+                }
+            }
+            let first = starting.partition_point(|&(from, _)| from < node);
+            let here = starting[first..].iter().take_while(|(from, _)| *from == node).map(|&(_, face)| face);
+            here.into_iter().find(|&next| corner_of(next).is_some_and(|corner| fan[corner]))
+        };
+        let mut label = vec![u32::MAX; self.faces.len()];
+        let mut lines = 0;
+        for seed in 0..self.faces.len() as u32 {
+            let mut face = seed;
+            while label[face as usize] == u32::MAX {
+                label[face as usize] = lines;
+                let Some(next) = after(face) else { break };
+                face = next;
+            }
+            lines += u32::from(label[seed as usize] == lines);
+        }
+        self.outline_of_face = label;
     }
 
     /// Labels what hangs together by faces.
@@ -434,6 +474,24 @@ mod tests {
         let mut c = c;
         c.faces.pop();
         assert!(c.is_conforming().is_err());
+    }
+
+    #[test]
+    fn outlines_that_touch_at_a_node_are_lines_of_their_own() {
+        let lengths = |columns: u32, rows: u32, inside: &[bool]| {
+            let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: UVec3::new(columns, rows, 1) };
+            let c = Complex::from_flat_cells(grid, inside);
+            let lines = c.outline_of_face.iter().max().map_or(0, |most| most + 1);
+            let mut lengths: Vec<usize> =
+                (0..lines).map(|line| c.outline_of_face.iter().filter(|&&l| l == line).count()).collect();
+            lengths.sort_unstable();
+            lengths
+        };
+        assert_eq!(lengths(3, 3, &[true, true, true, true, false, true, true, true, true]), [4, 12]);
+        // Two cells that share a corner alone.
+        assert_eq!(lengths(2, 2, &[true, false, false, true]), [4, 4]);
+        // A ring that bites its tail at a corner: the cells there hang together around two ways, and so does its line.
+        assert_eq!(lengths(3, 3, &[true, true, false, true, false, true, true, true, true]), [16]);
     }
 
     #[test]
