@@ -6,6 +6,7 @@ use std::time::Duration;
 use bevy_egui::egui::{self, Context, RichText, Ui};
 
 use super::{Asked, Choice, Compare, Easing, Facts, Repeat, Wish, theme};
+use crate::format::Use;
 use crate::record::encode::Format;
 use crate::record::{Draft, Ease, MAX_SIDE, MAX_TITLE, MIN_SIDE, Settings, View};
 use crate::view::Mode;
@@ -121,7 +122,7 @@ fn form(ui: &mut Ui, facts: &Facts, record: &mut RecordChoice, wishes: &mut Vec<
     theme::row(
         ui,
         "File",
-        "The name says the format: .mp4, .gif, .apng, FOLDER/; with ffmpeg .webm, .mov, .mkv, .webp",
+        &format!("The name says the format: {}, or FOLDER/ for numbered PNGs", Use::Film.listed()),
         |ui| {
             ui.add(egui::TextEdit::singleline(&mut record.name).desired_width(196.0));
             if ui.button("Choose…").clicked() {
@@ -223,6 +224,6 @@ fn picture(ui: &mut Ui, draft: &mut Draft) {
     theme::row(ui, "", "", |ui| {
         ui.checkbox(&mut draft.legend, "legend").on_hover_text("Explains the colours");
         ui.checkbox(&mut draft.transparent, "transparent")
-            .on_hover_text("No background: for .apng, .gif, PNGs, .webm, .mov, .mkv and .webp");
+            .on_hover_text("No background, in formats that can be without one");
     });
 }
