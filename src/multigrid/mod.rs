@@ -6,7 +6,7 @@
 //! piecewise linear functions. The coarse operator `Pᵀ A P` (Galerkin) has the same fifteen-point pattern, because both
 //! ends of a fine edge lie in one coarse tetrahedron.
 //!
-//! In the plane rows have six entries, and every fine edge lies on one coarse edge or beside one: see [`Level::coarsen`].
+//! In the plane rows have six entries, and every fine edge lies on one coarse edge or beside one: see `level.rs`.
 //!
 //! # Practice
 //! Smoother: two damped Jacobi sweeps with Chebyshev weights, the same before and (reversed) after, so that the cycle is
