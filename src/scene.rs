@@ -34,9 +34,6 @@ use crate::{Error, Result};
 /// The version of scene files this program writes and reads.
 pub const VERSION: u32 = 1;
 
-/// Most keyframes: each is a whole mesh in the growth file.
-pub const MAX_KEYS: usize = 64;
-
 /// Where the boundary comes from, written `gallery:NAME` or as a path.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
@@ -118,7 +115,7 @@ pub struct Draft {
     /// μ in 0..=1: 0 keeps shape, 1 reaches the size asked for.
     #[serde(default = "defaults::fidelity")]
     pub fidelity: f32,
-    /// Keyframes of the growth, 1..=[`MAX_KEYS`].
+    /// Keyframes of the growth, 1..=[`MAX_KEYS`](crate::settings::MAX_KEYS).
     #[serde(default = "defaults::keys")]
     pub keys: usize,
     /// Of a picture: the colour and tolerance of its background, `COLOUR,TOLERANCE`.
@@ -194,12 +191,7 @@ impl Scene {
         } else {
             check_resolution(draft.resolution)?;
         }
-        if !(0.0..=1.0).contains(&draft.fidelity) {
-            return Err(Error::input(format!("fidelity {} is not within 0 to 1", draft.fidelity)));
-        }
-        if !(1..=MAX_KEYS).contains(&draft.keys) {
-            return Err(Error::input(format!("keys {} is not within 1 to {MAX_KEYS}", draft.keys)));
-        }
+        draft.settings().check()?;
         let base_may_be = draft.base > 0.0 && draft.base.is_finite();
         if !(base_may_be || draft.clamp) {
             return Err(Error::input(format!("base {} is not greater than 0 and finite", draft.base)));

@@ -43,17 +43,12 @@ impl Settings {
     /// # Errors
     /// One sentence with the field, its value and its range.
     pub fn check(&self) -> Result<()> {
-        check(self.fidelity, self.keys)
+        if !(0.0..=1.0).contains(&self.fidelity) {
+            return Err(Error::input(format!("fidelity {} is not within 0 to 1", self.fidelity)));
+        }
+        if !(1..=MAX_KEYS).contains(&self.keys) {
+            return Err(Error::input(format!("keys {} is not within 1 to {MAX_KEYS}", self.keys)));
+        }
+        Ok(())
     }
-}
-
-/// Refuses a fidelity or a number of keyframes that is out of range.
-pub(crate) fn check(fidelity: f32, keys: usize) -> Result<()> {
-    if !(0.0..=1.0).contains(&fidelity) {
-        return Err(Error::input(format!("fidelity {fidelity} is not within 0 to 1")));
-    }
-    if !(1..=MAX_KEYS).contains(&keys) {
-        return Err(Error::input(format!("keys {keys} is not within 1 to {MAX_KEYS}")));
-    }
-    Ok(())
 }

@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Response, Ui};
 use super::{Facts, Wish, theme};
 use crate::{
     diagnostics::human_bytes,
-    scene::MAX_KEYS,
+    settings::MAX_KEYS,
     voxel::{MAX_FLAT_RESOLUTION, MAX_RESOLUTION, MIN_RESOLUTION, memory_estimate},
 };
 

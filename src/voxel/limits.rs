@@ -18,33 +18,32 @@ pub fn memory_estimate(cells: f64) -> f64 {
     cells * BYTES_PER_CELL
 }
 
+/// Cells along the longest side of a picture, at most.
+pub const MAX_FLAT_RESOLUTION: u32 = 512;
+
 /// Whether so many cells along the longest axis can be had.
 ///
 /// # Errors
 /// Names the range, and the memory that a solid box of that resolution would take.
 pub fn check_resolution(resolution: u32) -> Result<()> {
-    if (MIN_RESOLUTION..=MAX_RESOLUTION).contains(&resolution) {
-        return Ok(());
-    }
-    let bytes = human_bytes(memory_estimate(f64::from(resolution).powi(3)));
-    Err(Error::input(format!(
-        "resolution {resolution} is not within {MIN_RESOLUTION} to {MAX_RESOLUTION}: a solid box would take about {bytes} of memory"
-    )))
+    check(resolution, MAX_RESOLUTION, "solid box", 3)
 }
-
-/// Cells along the longest side of a picture, at most.
-pub const MAX_FLAT_RESOLUTION: u32 = 512;
 
 /// Refuses a resolution out of range for a picture.
 ///
 /// # Errors
-/// Names the range.
+/// Names the range, and the memory that a full square of that resolution would take.
 pub fn check_flat_resolution(resolution: u32) -> Result<()> {
-    if (MIN_RESOLUTION..=MAX_FLAT_RESOLUTION).contains(&resolution) {
+    check(resolution, MAX_FLAT_RESOLUTION, "full square", 2)
+}
+
+/// Refuses what is not within `MIN_RESOLUTION..=most`; `full` is what has a cell at each place along so many axes.
+fn check(resolution: u32, most: u32, full: &str, axes: i32) -> Result<()> {
+    if (MIN_RESOLUTION..=most).contains(&resolution) {
         return Ok(());
     }
-    let bytes = human_bytes(memory_estimate(f64::from(resolution).powi(2)));
+    let bytes = human_bytes(memory_estimate(f64::from(resolution).powi(axes)));
     Err(Error::input(format!(
-        "resolution {resolution} is not within {MIN_RESOLUTION} to {MAX_FLAT_RESOLUTION}: a full square would take about {bytes} of memory"
+        "resolution {resolution} is not within {MIN_RESOLUTION} to {most}: a {full} would take about {bytes} of memory"
     )))
 }

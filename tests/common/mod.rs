@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use glam::DVec3;
+use glam::{DVec3, IVec3, Vec3A};
 use homunculus::{
     Result,
     boundary::{Boundary, Regions},
@@ -12,7 +12,7 @@ use homunculus::{
     picture::{self, Cut, Picture},
     run::{self, Observer, Outcome, Progress},
     settings::Settings,
-    voxel::Flat,
+    voxel::{Complex, Flat, Grid},
 };
 
 /// The folder of real inputs beside the checkout, or `None` with a word where it is not.
@@ -150,4 +150,28 @@ pub fn flat(picture: &Picture, field: &Field) -> Flat {
         importance: field.values.clone(),
         regions: regions.map(|r| Regions { names: r.names.clone(), of_vertex: r.of_pixel.clone() }),
     }
+}
+
+/// The complex of the cells for which `inside` holds.
+pub fn complex(size: IVec3, inside: impl Fn(IVec3) -> bool) -> Complex {
+    let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: size.as_uvec3() };
+    let cell = |k: i32| IVec3::new(k % size.x, k / size.x % size.y, k / size.x / size.y);
+    let cells: Vec<bool> = (0..size.element_product()).map(|k| inside(cell(k))).collect();
+    Complex::from_cells(grid, &cells)
+}
+
+/// A body of one cell, shrunk to a tenth, just below a box two cells thick.
+pub fn mote() -> (Complex, Vec<Vec3A>) {
+    let complex = complex(IVec3::new(3, 3, 4), |c| c.z >= 2 || c == IVec3::new(1, 1, 0));
+    let positions = complex.rest.iter().zip(&complex.body).map(|(p, &body)| {
+        if body == complex.body[0] { (*p - Vec3A::new(1.5, 1.5, 0.0)) * 0.1 + Vec3A::new(1.5, 1.5, 1.85) } else { *p }
+    });
+    let positions = positions.collect();
+    (complex, positions)
+}
+
+/// The mote moved up by so many cells.
+pub fn lifted(complex: &Complex, positions: &[Vec3A], by: f32) -> Vec<Vec3A> {
+    let up = |body: u32| if body == complex.body[0] { Vec3A::Z * by } else { Vec3A::ZERO };
+    positions.iter().zip(&complex.body).map(|(p, &body)| *p + up(body)).collect()
 }

@@ -7,7 +7,10 @@ use homunculus::{
     voxel::{Complex, blend},
 };
 
-use super::complex;
+use super::{
+    common::{lifted, mote},
+    complex,
+};
 
 /// The certificate of a state, and whether the motion to it is proven.
 fn motion(complex: &Complex, from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
@@ -47,22 +50,6 @@ fn the_edge_that_does_not() {
     let (complex, to) = passing(0.92, 0.918);
     let (certificate, proven) = motion(&complex, &complex.rest, &to);
     assert!(certificate.certified() && proven);
-}
-
-/// A body of one cell, shrunk to a tenth, just below a box two cells thick.
-fn mote() -> (Complex, Vec<Vec3A>) {
-    let complex = complex(IVec3::new(3, 3, 4), |c| c.z >= 2 || c == IVec3::new(1, 1, 0));
-    let positions = complex.rest.iter().zip(&complex.body).map(|(p, &body)| {
-        if body == complex.body[0] { (*p - Vec3A::new(1.5, 1.5, 0.0)) * 0.1 + Vec3A::new(1.5, 1.5, 1.85) } else { *p }
-    });
-    let positions = positions.collect();
-    (complex, positions)
-}
-
-/// The mote moved up by so many cells.
-fn lifted(complex: &Complex, positions: &[Vec3A], by: f32) -> Vec<Vec3A> {
-    let up = |body: u32| if body == complex.body[0] { Vec3A::Z * by } else { Vec3A::ZERO };
-    positions.iter().zip(&complex.body).map(|(p, &body)| *p + up(body)).collect()
 }
 
 /// A mote in front of a box was inside it after one step, no face crossing another before or after, and the guard let

@@ -11,6 +11,7 @@ mod edge;
 mod states;
 mod surfaces;
 
+use common::complex;
 use glam::{DVec3, IVec3, UVec3};
 use homunculus::voxel::{Complex, Grid};
 use proptest::prelude::*;
@@ -18,14 +19,6 @@ use proptest::prelude::*;
 /// So many cases, no files left behind.
 pub fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig { cases, failure_persistence: None, max_shrink_iters: 200, ..ProptestConfig::default() }
-}
-
-/// The complex of the cells for which `inside` holds.
-pub fn complex(size: IVec3, inside: impl Fn(IVec3) -> bool) -> Complex {
-    let grid = Grid { origin: DVec3::ZERO, cell_size: 1.0, cells: size.as_uvec3() };
-    let cell = |k: i32| IVec3::new(k % size.x, k / size.x % size.y, k / size.x / size.y);
-    let cells: Vec<bool> = (0..size.element_product()).map(|k| inside(cell(k))).collect();
-    Complex::from_cells(grid, &cells)
 }
 
 /// A complex that is shown by its cells.

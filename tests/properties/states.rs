@@ -11,7 +11,11 @@ use homunculus::{
 use proptest::prelude::*;
 use robust::{Coord3D, orient3d};
 
-use super::{boxes_with_gaps, cases, common::Random, complex, rough, scattered};
+use super::{
+    boxes_with_gaps, cases,
+    common::{Random, lifted, mote},
+    complex, rough, scattered,
+};
 
 /// Elements that are not positive, by exact arithmetic one at a time.
 fn inverted(complex: &Complex, positions: &[Vec3A]) -> usize {
@@ -243,26 +247,10 @@ fn sabotage_unguarded_bars_cross() {
     assert!(bars_after_growth(false).unwrap_err().contains("crossings"));
 }
 
-/// A body of one cell, shrunk to a tenth, just below a box two cells thick.
-fn mote() -> (Complex, Vec<Vec3A>) {
-    let complex = complex(IVec3::new(3, 3, 4), |c| c.z >= 2 || c == IVec3::new(1, 1, 0));
-    let positions = complex.rest.iter().zip(&complex.body).map(|(p, &body)| {
-        if body == complex.body[0] { (*p - Vec3A::new(1.5, 1.5, 0.0)) * 0.1 + Vec3A::new(1.5, 1.5, 1.85) } else { *p }
-    });
-    let positions = positions.collect();
-    (complex, positions)
-}
-
 /// The certificate of a state, and whether the motion to it is proven.
 fn motion(complex: &Complex, surfaces: &Surfaces, from: &[Vec3A], to: &[Vec3A]) -> (Certificate, bool) {
     let [from, to] = [from, to].map(|nodes| CarriedState::new(surfaces, nodes.to_vec()));
     certify_motion(complex, surfaces, &from, &to)
-}
-
-/// The mote moved up by so many cells.
-fn lifted(complex: &Complex, positions: &[Vec3A], by: f32) -> Vec<Vec3A> {
-    let up = |body: u32| if body == complex.body[0] { Vec3A::Z * by } else { Vec3A::ZERO };
-    positions.iter().zip(&complex.body).map(|(p, &body)| *p + up(body)).collect()
 }
 
 #[test]

@@ -7,10 +7,10 @@ use clap::{ArgMatches, Args, ValueEnum};
 
 use crate::format::Use;
 use crate::importance::{Layer, Range};
-use crate::settings::Reference;
+use crate::settings::{MAX_KEYS, Reference};
 use crate::{Error, Result};
 use crate::{
-    scene::{Draft, MAX_KEYS, Scene, Source},
+    scene::{Draft, Scene, Source},
     voxel::{MAX_RESOLUTION, MIN_RESOLUTION},
 };
 
